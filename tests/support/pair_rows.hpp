@@ -17,15 +17,13 @@ struct PairOfBoxes {
 
 [[nodiscard]] Vector gaps(const SemidiscreteProblem& problem, const Vector& displacement);
 
-/// Lengths of the resultant and moment of a row of G about positions X + U.
-struct RowBalance {
-  double force = 0.0, moment = 0.0;
-};
-[[nodiscard]] RowBalance balance_of_row(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
-                                        const Vector& displacement);
-
-/// Returns the displacement followed by a rotation by two radians, in space about more than one axis, and a
-/// translation.
-[[nodiscard]] Vector moved_rigidly(const SemidiscreteProblem& problem, const Vector& displacement);
+/// Expects that all rows of G have neither a resultant nor a moment about positions X + U.
+void expect_balance(const SemidiscreteProblem& problem, const ContactRows& rows, const Vector& displacement,
+                    double tolerance, const std::string& what);
+/// Expects that the rows of a step yield the change of the gaps between its ends.
+void expect_change_of_gaps(const SemidiscreteProblem& problem, const ContactRows& rows, const Vector& first,
+                           const Vector& second, const std::string& what);
+/// Expects that a rotation by two radians, in space about more than one axis, and a translation change no gap.
+void expect_invariant_gaps(const SemidiscreteProblem& problem, const Vector& displacement, const std::string& what);
 
 }  // namespace ricochet::test_support

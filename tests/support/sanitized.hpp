@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdlib>
+
 /// @file Extent of a test in a build with sanitizers: these check the code, not the numbers, and cost two orders of
 /// magnitude, so that a sample is enough.
 namespace ricochet::test_support {
@@ -13,6 +15,11 @@ inline constexpr bool is_sanitized = false;
 /// Returns the number of random problems of each kind.
 constexpr unsigned seeds(unsigned count) {
   return is_sanitized ? (count + 9) / 10 : count;
+}
+/// Returns it as well, or `count` times RICOCHET_RANDOM_CASES if that is set.
+inline unsigned samples(unsigned count) {
+  const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
+  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : seeds(count);
 }
 
 }  // namespace ricochet::test_support

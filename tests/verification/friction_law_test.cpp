@@ -145,7 +145,7 @@ TEST(FrictionLaw, HoldsWithEveryMultiplierSpace) {
       if (method.mass == "lumped" || method.gamma == 0.6) continue;
       for (const char* space : {"p0", "p1", "dual"}) {
         const bool stable =
-            is_stable(space, body.dimension == 2 ? CellShape::interval : CellShape::triangle, body.degree);
+            instability(space, body.dimension == 2 ? CellShape::interval : CellShape::triangle, body.degree).empty();
         if (!stable) continue;  // W may be singular
         expect_law(body, method, "friction = 0.2\nmultipliers = \"" + std::string(space) + "\"\n", 0.2, false);
       }

@@ -24,8 +24,8 @@ class LostStages final : public StageSolve {
     if (number == 1) throw Error(ErrorKind::not_converged, "W has non-finite entries");
     return solution_[0];
   }
-  void follow(const Vector&) override {}
-  void renew(const Vector&, const Vector&) override {}
+  void rotate_operators(const Vector&) override {}
+  void renew_operators(const Vector&, const Vector&) override {}
 
  private:
   std::vector<Stage> stages_;

@@ -78,7 +78,7 @@ TEST(PublishedScheme, LaursenLoveKeepsEnergyWithoutPenetration) {
     bool pulled = false, kicked = false;
     expect_identity(run, name, [&](const StepEnd&, const StepEnd& b) {
       deepest = std::max(deepest, -b.gap.minCoeff());
-      for (const StepPart& part : run.scheme().last_step().other_parts) {
+      for (const OtherStageForces& part : run.scheme().last_step().other_stages) {
         kicked = true;
         pulled = pulled || part.forces.normal_reaction.minCoeff() < 0.0;
       }
@@ -231,7 +231,7 @@ TEST(PublishedScheme, BatheDissipatesInClosedForm) {
     const SparseMatrix m = run.problem().mass.to_sparse();
     const SparseMatrix& k = run.problem().internal_force->tangent();
     expect_identity(run, name, [&](const StepEnd& s, const StepEnd& e) {
-      const StepPart& middle = run.scheme().last_step().other_parts[1];
+      const OtherStageForces& middle = run.scheme().last_step().other_stages[1];
       const Vector hv = run.simulation().increment();  // 3Δ₂ − Δ₁
       const Vector first = (middle.increment - 0.25 * hv) / 1.5, second = (hv + first) / 3.0;
       Vector gap_first, gap_hv;

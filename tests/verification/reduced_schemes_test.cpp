@@ -127,7 +127,7 @@ TEST(ReducedKane, NamesTheSettingThatLosesLess) {
     CaseRun run(thrown_case(bodies().front(), "equivalent", reduced_kane(weight),
                             "friction = " + std::to_string(friction) + "\n"),
                 {more});
-    return run.scheme().traits_for(run.problem()).setting_that_loses_less;
+    return run.scheme().traits_for(run.problem()).less_dissipative_setting;
   };
   const std::string any = "time.step=0.01", named = "time.reaction_weight = \"adaptive\"";
   EXPECT_EQ(setting("automatic", 0.3, any), named);

@@ -35,11 +35,12 @@ struct Zones {
       : coefficients{run.session().scheme().operators(run.problem()).back()}, nearby(run.problem()) {
     coefficients.mass /= longer * longer;
     product = StageProduct(run.problem(), coefficients);
-    zones = std::make_unique<Subdomains>(run.problem(), coefficients, solved, product, nearby, false, nullptr);
+    zones = std::make_unique<Subdomains>(run.problem(), coefficients, solved, product, nearby, shared, nullptr);
   }
   OperatorCoefficients coefficients;
   StageProduct product;
   ContactNeighbourhood nearby;
+  SharedContact shared;
   std::unique_ptr<Subdomains> zones;
 };
 

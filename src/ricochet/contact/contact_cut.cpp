@@ -57,14 +57,15 @@ class ContactCutter {
   void cut(ContactAxes axes, std::vector<Index>& numbers) {
     if (axes.along != ContactAxis::none) numbers = chosen(numbers, items(axes.along));
     if (axes.of == ContactAxis::none) return;
-    constexpr Index on_another_rank = -2;
+    // A contact point may be on another rank, and no other item (ContactBoundary::own_point).
+    const Index absent = axes.of == ContactAxis::point ? -2 : -1;
     for (Index& each : numbers) {
       if (each < 0) continue;
       const Index own = number(axes.of, each);
-      each = own >= 0 ? own : on_another_rank;
+      each = own >= 0 ? own : absent;
     }
     if (axes.along != ContactAxis::none) return;
-    std::erase(numbers, on_another_rank);
+    std::erase(numbers, absent);
     std::sort(numbers.begin(), numbers.end());
   }
   /// Columns without a number in the part are omitted.

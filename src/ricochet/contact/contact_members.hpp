@@ -1,25 +1,34 @@
 #pragma once
 
+#include <concepts>
+
 #include "ricochet/contact/curved_contact.hpp"
 
-/// @file The members of a contact boundary, listed once for visitors that send them (base/archive.hpp) and cut them
-/// (contact_cut.hpp). A new member needs a place here.
+/// @file The members of a contact boundary, listed once for visitors that send them (base/archive.hpp), cut them
+/// (contact_cut.hpp) and gather them (solver/gathered/point_messages.hpp). A new member needs a place here; tests count
+/// them.
 namespace ricochet {
 
-/// Tangents: d−1 per point; entries: those of ContactBoundary::nodes.
+/// Either a value or a constant one: a visitor may read the members or change them.
+template <class Value, class Type>
+concept PossiblyConst = std::same_as<std::remove_const_t<Value>, Type>;
+
+/// Tangents: d−1 per point; entries: the contact nodes of ContactBoundary::nodes.
 enum class ContactAxis { none, point, tangent, entry, node, dof, facet };
 
 /// Meaning of a member's indices and values, by which it is divided.
 struct ContactAxes {
-  using IsMemberRule = void;  ///< for visitors that do not need it
-  /// Items to which numbers, columns of a dense matrix or rows of a sparse one belong. The member may also be empty.
+  using IsMemberRule = void;  ///< for Archive, which does not need it
+  /// Items whose data the member contains, one number, matrix, column of a dense matrix or row of a sparse matrix each.
+  /// The member may also be empty.
   ContactAxis along = ContactAxis::none;
-  /// Items that integers number, and to which the columns of a sparse matrix belong.
+  /// Items to which the values of a member refer: its integers are their numbers, and the columns of a sparse matrix
+  /// are theirs.
   ContactAxis of = ContactAxis::none;
 };
 
-template <class Visitor>
-void persist(Visitor& visit, ContactRows& rows) {
+template <class Visitor, PossiblyConst<ContactRows> Rows>
+void persist(Visitor& visit, Rows& rows) {
   using enum ContactAxis;
   visit(ContactAxes{point}, rows.normals, rows.tangents, rows.gap_rounding, rows.gap, rows.revision);
   visit(ContactAxes{tangent}, rows.slips);
@@ -31,8 +40,8 @@ void persist(Visitor& visit, ContactRows& rows) {
 
 /// Visits all members except `geometry` and `surface`. Those that only contact between bodies has, which cannot be
 /// divided, have no axes.
-template <class Visitor>
-void persist(Visitor& visit, ContactBoundary& contact) {
+template <class Visitor, PossiblyConst<ContactBoundary> Boundary>
+void persist(Visitor& visit, Boundary& contact) {
   using enum ContactAxis;
   visit(ContactAxes{}, contact.dimension, contact.reachable_nodes, contact.touches_itself,
         contact.has_friction_elsewhere, contact.unpaired_gap, contact.opposite_node, contact.opposite_projection,

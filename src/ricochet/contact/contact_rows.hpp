@@ -9,23 +9,27 @@
 /// curved surface they are those at one displacement and time.
 namespace ricochet {
 
-/// Row i of the gap operator G = c ⊗ nᵀ and rows (d−1)i … of B_T = c ⊗ tᵀ are the derivatives of point i's gap and of
-/// its displacements along the surface. Contact solvers read the matrices; other code uses the functions.
-struct ContactRows {
-  Points normals;                    ///< unit normal out of the obstacle, d × points
-  std::vector<Points> tangents;      ///< d × (d−1), orthonormal with the normal
-  std::vector<char> slips;           ///< per row of B_T; 0 if supports constrain that direction: no friction
-  Vector gap_rounding;               ///< up to which a gap is zero to rounding
-  SparseRowMatrix gap_operator;      ///< G, points × dofs
-  SparseRowMatrix tangential_trace;  ///< B_T, (d−1)·points × dofs; a row without slip is zero
-  Vector gap;                        ///< at the last update, if rows may change
-  std::vector<long> revision;        ///< per point: changes with its row; empty if rows never change
+/// Data of contact rows that do not depend on the frame in which their columns are (corotated_frame.hpp).
+struct ContactFrames {
+  Points normals;                ///< unit normal out of the obstacle, d × points
+  std::vector<Points> tangents;  ///< d × (d−1), orthonormal with the normal
+  std::vector<char> slips;       ///< per row of B_T; 0 if supports constrain that direction: no friction
+  Vector gap_rounding;           ///< up to which a gap is zero to rounding
+  Vector gap;                    ///< at the last update, if rows may change
   /// For contact between bodies that slide far, whose rows involve other nodes as the bodies move: the displacements
   /// from which the rows were computed. Empty if rows have the same pattern for the whole run.
   Vector sliding_state;
   /// c, points × nodes, for points whose rows have exactly the entries c ⊗ n and c ⊗ t, whatever their directions; the
   /// rows of all other points are empty. Null if the directions of all points are constant.
   std::shared_ptr<const SparseRowMatrix> rotating_trace;
+};
+
+/// Row i of the gap operator G = c ⊗ nᵀ and rows (d−1)i … of B_T = c ⊗ tᵀ are the derivatives of point i's gap and of
+/// its displacements along the surface. Contact solvers read the matrices; other code uses the functions.
+struct ContactRows : ContactFrames {
+  SparseRowMatrix gap_operator;      ///< G, points × dofs
+  SparseRowMatrix tangential_trace;  ///< B_T, (d−1)·points × dofs; a row without slip is zero
+  std::vector<long> revision;        ///< per point: changes with its row; empty if rows never change
 
   [[nodiscard]] Index size() const { return normals.cols(); }
   [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }

@@ -32,8 +32,6 @@ class NodeExchange {
   [[nodiscard]] const std::vector<std::int64_t>& numbers() const { return numbers_; }
   [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
   [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
-  [[nodiscard]] std::size_t neighbour_count() const { return neighbours_.size(); }
-  [[nodiscard]] Index shared_count() const { return static_cast<Index>(shared_.size()); }
   [[nodiscard]] const Traffic& traffic() const { return traffic_; }
 
  private:

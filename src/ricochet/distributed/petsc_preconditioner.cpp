@@ -130,17 +130,22 @@ class PetscPreconditioner final : public Preconditioner {
   PetscErrorCode set_from_options(const std::string& options) {
     PetscFunctionBeginUser;
     std::istringstream words(options);
-    std::vector<std::string> added;
+    // Cleared also after an error: another preconditioner would take them for options of the user.
+    struct AddedOptions {
+      std::vector<std::string> names;
+      ~AddedOptions() {
+        for (const std::string& name : names) (void)PetscOptionsClearValue(nullptr, name.c_str());
+      }
+    } added;
     for (std::string name, value; words >> name >> value;) {
       const std::string option = "-ricochet_" + name.substr(1);
       PetscBool is_set = PETSC_FALSE;
       PetscCall(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &is_set));
       if (is_set == PETSC_TRUE) continue;
       PetscCall(PetscOptionsSetValue(nullptr, option.c_str(), value.c_str()));
-      added.push_back(option);
+      added.names.push_back(option);
     }
     PetscCall(PCSetFromOptions(preconditioner_));
-    for (const std::string& option : added) PetscCall(PetscOptionsClearValue(nullptr, option.c_str()));
     PetscFunctionReturn(0);
   }
 

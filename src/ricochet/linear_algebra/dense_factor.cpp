@@ -3,10 +3,7 @@
 #include <algorithm>
 
 #include "ricochet/base/blas.hpp"
-
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
+#include "ricochet/base/flush_denormals.hpp"
 
 // Fortran interfaces of BLAS and LAPACK, both in OpenBLAS; matrices in column-major order.
 extern "C" {
@@ -19,6 +16,9 @@ void dgetrs_(const char* transposed, const int* size, const int* columns, const 
 void sgetrf_(const int* rows, const int* columns, float* a, const int* a_stride, int* pivots, int* info);
 void sgetrs_(const char* transposed, const int* size, const int* columns, const float* a, const int* a_stride,
              const int* pivots, float* b, const int* b_stride, int* info);
+void dpotrf_(const char* part, const int* size, double* a, const int* a_stride, int* info);
+void dpotrs_(const char* part, const int* size, const int* columns, const double* a, const int* a_stride, double* b,
+             const int* b_stride, int* info);
 void dgemv_(const char* transposed, const int* rows, const int* columns, const double* factor, const double* a,
             const int* a_stride, const double* x, const int* x_stride, const double* y_factor, double* y,
             const int* y_stride);
@@ -29,28 +29,6 @@ namespace ricochet {
 namespace {
 constexpr double one = 1.0;
 constexpr double zero = 0.0;
-
-/// Flushes denormal numbers to zero: entries that decay with distance fall below the normal range of single precision,
-/// where arithmetic is a hundred times slower. At the accuracy required of that precision they are zero.
-class TinyIsZero {
- public:
-  TinyIsZero(const TinyIsZero&) = delete;
-  TinyIsZero& operator=(const TinyIsZero&) = delete;
-#if defined(__SSE__)
-  TinyIsZero() : before_(_mm_getcsr()) {
-    _mm_setcsr(before_ | flush_results | flush_operands);
-  }
-  ~TinyIsZero() {
-    _mm_setcsr(before_);
-  }
-
- private:
-  static constexpr unsigned flush_results = 0x8000, flush_operands = 0x0040;
-  unsigned before_;
-#else
-  TinyIsZero() = default;
-#endif
-};
 }  // namespace
 
 void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
@@ -94,7 +72,7 @@ double DenseLu::smallest_pivot() const {
 
 bool SingleLu::compute(const Matrix& matrix) {
   prepare_blas();
-  const TinyIsZero mode;
+  const FlushDenormals flush;
   factors_ = matrix.cast<float>();
   const int size = static_cast<int>(matrix.rows());
   permutation_.resize(static_cast<std::size_t>(size));
@@ -107,11 +85,28 @@ void SingleLu::solve(const Vector& right, Vector& x) const {
   const int size = static_cast<int>(right.size());
   const int single = 1;
   int info = 0;
-  const TinyIsZero mode;
+  const FlushDenormals flush;
   solution_ = right.cast<float>();
   if (size > 0)
     sgetrs_("N", &size, &single, factors_.data(), &size, permutation_.data(), solution_.data(), &size, &info);
   x = solution_.cast<double>();
+}
+
+bool DenseCholesky::compute(const Matrix& matrix) {
+  prepare_blas();
+  factor_ = matrix;
+  const int size = static_cast<int>(matrix.rows());
+  int info = 0;
+  if (size > 0) dpotrf_("L", &size, factor_.data(), &size, &info);
+  return info == 0;
+}
+
+void DenseCholesky::solve(const Vector& right, Vector& x) const {
+  x = right;
+  const int size = static_cast<int>(right.size());
+  const int single = 1;
+  int info = 0;
+  if (size > 0) dpotrs_("L", &size, &single, factor_.data(), &size, x.data(), &size, &info);
 }
 
 void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y) {

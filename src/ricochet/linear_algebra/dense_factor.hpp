@@ -46,6 +46,18 @@ class SingleLu {
   mutable Eigen::VectorXf solution_;
 };
 
+/// Cholesky factorization A = L Lᵀ.
+class DenseCholesky {
+ public:
+  /// Reads the lower triangle and reuses its storage. Returns false if A is not positive definite.
+  bool compute(const Matrix& matrix);
+  /// Computes x = A⁻¹ b.
+  void solve(const Vector& right, Vector& x) const;
+
+ private:
+  Matrix factor_;
+};
+
 /// Computes y = A x.
 void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y);
 

@@ -1,6 +1,8 @@
 #include "ricochet/linear_algebra/preconditioner_factory.hpp"
 
-#include <algorithm>
+#include <stdexcept>
+
+#include "ricochet/base/error.hpp"
 
 namespace ricochet {
 
@@ -9,7 +11,7 @@ namespace {
 std::vector<Registration<PreconditionerType>> preconditioners() {
   std::vector<Registration<PreconditionerType>> all;
   all.push_back({"block-jacobi", {.is_block_diagonal = true}});
-  all.push_back({"gamg", {.petsc_options = "-pc_type gamg", .suits_long_steps = true}});
+  all.push_back({"gamg", {.petsc_options = "-pc_type gamg", .is_fallback = true}});
   // The defaults of BoomerAMG for three dimensions take four times as long on elastic bodies.
   all.push_back({"boomeramg",
                  {.petsc_options = "-pc_type hypre -pc_hypre_type boomeramg -pc_hypre_boomeramg_strong_threshold 0.5 "
@@ -26,16 +28,21 @@ Registry<PreconditionerType>& preconditioner_registry() {
   return registry;
 }
 
-const std::string& preconditioner_of_long_steps() {
-  const std::vector<Registration<PreconditionerType>>& all = preconditioner_registry().all();
-  return std::find_if(all.begin(), all.end(), [](const auto& entry) { return entry.type.suits_long_steps; })->name;
+const std::string& fallback_preconditioner() {
+  for (const Registration<PreconditionerType>& entry : preconditioner_registry().all()) {
+    if (entry.type.is_fallback) return entry.name;
+  }
+  throw std::logic_error("no preconditioner is registered as the fallback");
 }
 
 std::unique_ptr<Preconditioner> make_named_preconditioner(const std::string& name, const SparseMatrix& part,
                                                           const std::vector<char>& solved, const Points& nodes,
                                                           const Ranks& ranks, const PreconditionerFactory* petsc) {
   const PreconditionerType& type = preconditioner_registry().find(name).type;
-  return type.make != nullptr ? type.make(part, solved, nodes, ranks) : petsc->make(name, part, solved, nodes, ranks);
+  if (type.make != nullptr) return type.make(part, solved, nodes, ranks);
+  if (petsc == nullptr)
+    throw Error(ErrorKind::invalid_input, "preconditioner \"" + name + "\" needs PETSc, which only ricochet-mpi has");
+  return petsc->make(name, part, solved, nodes, ranks);
 }
 
 }  // namespace ricochet

@@ -36,22 +36,22 @@ void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscretePr
 void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& model) {
   if (model.problem.contact.size() == 0) return;
   const LongSteps limit = scheme.traits_for(model.problem).long_steps;
-  if (limit.trouble.empty()) return;
+  if (limit.consequence.empty()) return;
   const std::vector<double> times = cell_crossing_times(model.body);
   const double median = times[times.size() / 2], crossings = input.time.step / median;
-  if (!(crossings > limit.crossings)) return;
+  if (!(crossings > limit.courant_limit)) return;
   const std::string remedy =
       limit.shorter_steps_help
           ? fmt::format(
                 "use a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", which "
                 "accepts any step",
-                rounded_down(limit.crossings * median, 2))
+                rounded_down(limit.courant_limit * median, 2))
           : "use scheme \"reduced-kane\" with mass \"equivalent\", which accepts any step";
   log::warning(
       fmt::format("{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times; with {}, at more "
                   "than {:g} per step, {}; {}",
-                  input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
-                  limit.trouble, remedy));
+                  input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time),
+                  limit.courant_limit, limit.consequence, remedy));
 }
 
 /// Warns of a body of degree 1 most of whose nodes are on its contact boundary: few are left inside to carry the
@@ -120,7 +120,7 @@ std::vector<long> find_jumps(const std::function<double(long)>& value, long step
 void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   const TimeSection& time = input.time;
   const JumpResponse response = scheme.traits().jump_response;
-  if (response == JumpResponse::fades) return;
+  if (response == JumpResponse::damped) return;
   constexpr long most_instants = 2'000'000;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -135,7 +135,7 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
         "0.5*(1-cos(pi*min(t/T, 1))), and resolve it with at least ten steps, or do not use the forces of this support",
         input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(jumps.front()) * time.step,
         jumps.size() > 1 ? fmt::format(" (and {} later)", counted(jumps.size() - 1, "time")) : "", scheme_text(time),
-        response == JumpResponse::grows ? "grows with every step" : "is the larger the shorter the step"));
+        response == JumpResponse::unstable ? "grows with every step" : "is the larger the shorter the step"));
   }
 }
 

@@ -9,13 +9,13 @@ namespace ricochet {
 
 namespace {
 
-std::string name_of(ReactionMean acting) {
+std::string name_of(ActingReaction acting) {
   switch (acting) {
-    case ReactionMean::end:
+    case ActingReaction::end:
       return "end";
-    case ReactionMean::path:
+    case ActingReaction::path_mean:
       return "mean";
-    case ReactionMean::mixed:
+    case ActingReaction::mixed_mean:
       return "adaptive";
   }
   return "";
@@ -32,7 +32,7 @@ void MethodWatch::enter_step(const State& state, double method_energy) {
   last_ = method_energy;
   least_ = std::min(least_, last_);
   largest_ = std::max(largest_, last_);
-  if (acting_ && *acting_ != ReactionMean::end) enter_weight(state.forces);
+  if (acting_ && *acting_ != ActingReaction::end) enter_weight(state.forces);
 }
 
 /// Enters the weight of a step in which contact presses; weights of other steps act on nothing.

@@ -14,7 +14,7 @@ namespace ricochet {
 class MethodWatch {
  public:
   /// Watches a scheme with these acting reactions; none if the scheme has no choice.
-  explicit MethodWatch(std::optional<ReactionMean> acting, const Ranks& ranks = one_rank())
+  explicit MethodWatch(std::optional<ActingReaction> acting, const Ranks& ranks = one_rank())
       : acting_(acting), ranks_(&ranks) {}
   void persist(const SnapshotVisitor& visit);
 
@@ -27,7 +27,7 @@ class MethodWatch {
  private:
   void enter_weight(const StepForces& forces);
 
-  std::optional<ReactionMean> acting_;
+  std::optional<ActingReaction> acting_;
   const Ranks* ranks_;
   double least_ = 0.0, largest_ = 0.0, last_ = 0.0;  ///< of the energy that the method has added
   double least_weight_ = std::numeric_limits<double>::infinity(), largest_weight_ = -least_weight_;

@@ -59,7 +59,7 @@ void judge_loss(const RunSummary& summary, const Scheme& scheme, const Semidiscr
     }
     return;
   }
-  const std::string setting = scheme.traits_for(problem).setting_that_loses_less;
+  const std::string setting = scheme.traits_for(problem).less_dissipative_setting;
   log::warning(
       fmt::format("contact forces and the scheme itself have removed {:.2g} % of the largest energy (contact_work and "
                   "numerical_dissipation of the history), which a real body keeps as waves: rebounds lack this much "

@@ -25,7 +25,7 @@ class Bathe final : public Scheme {
     return {{16.0 / (h * h), 1.0, damping_factor(problem)}, {9.0 / (h * h), 1.0, 3.0 / h}};
   }
   [[nodiscard]] LastStep last_step() const override {
-    return {.corrections = {.numerical_dissipation = dissipation_}, .other_parts = parts_};
+    return {.corrections = {.numerical_dissipation = dissipation_}, .other_stages = parts_};
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
@@ -39,8 +39,7 @@ class Bathe final : public Scheme {
     equations_.balance(problem, state.time + h, end_base_, rate_, stage);
     equations_.prescribe_from(problem, state.time + h, end_base_, stage);
     require_no_penetration(problem, end_base_, state.time + h, stage);
-    if (problem.has_moving_obstacles())
-      evaluate_obstacle_velocity(problem, end_base_, {state.time + h, 0.0, 1.0}, stage);
+    evaluate_obstacle_velocity(problem, end_base_, {state.time + h, 0.0, 1.0}, stage);
     require_friction(problem, rate_, 3.0 / h, stage);
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½
@@ -95,16 +94,16 @@ class Bathe final : public Scheme {
 
   /// Stores the forces of the start and the middle, before the state receives those of the end.
   void store_initial_forces(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
-    StepPart &start = parts_[0], &middle = parts_[1];
+    OtherStageForces &start = parts_[0], &middle = parts_[1];
     start.forces = state.forces;
     start.weight = middle.weight = 1.0 / 3.0;
     start.increment = middle.increment = 1.5 * first_ + (0.25 * step()) * rate_;
-    middle_equations_.store_part(problem, stages.stage(0), *middle_solution_, step(), damped_, 1.0, middle);
+    middle_equations_.store_other_stage(problem, stages.stage(0), *middle_solution_, step(), damped_, 1.0, middle);
     start.obstacle_increment = middle.obstacle_increment;
   }
 
   double dissipation_ = 0.0;
-  std::array<StepPart, 2> parts_;
+  std::array<OtherStageForces, 2> parts_;
   Vector first_, second_, velocity_, damped_, rate_, middle_base_, end_base_, middle_, force_, total_increment_,
       velocity_change_, end_displacement_, displacement_sum_;
   StepEquations equations_, middle_equations_;

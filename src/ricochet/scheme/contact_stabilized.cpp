@@ -20,10 +20,7 @@ namespace {
 class ContactStabilized final : public Scheme {
  public:
   explicit ContactStabilized(double step)
-      : Scheme(step, {.force_instant = -0.5,
-                      .acting_instant = -0.5,
-                      .supports_step_changes = true,
-                      .jump_response = JumpResponse::alternates}) {}
+      : Scheme(step, {.force_instant = -0.5, .supports_step_changes = true, .jump_response = JumpResponse::undamped}) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();

@@ -24,7 +24,7 @@ class Kane : public Scheme {
               .supports_step_changes = true,
               .supports_nonlinear_force = true,
               .conserves_moments_at_finite_strain = true,
-              .jump_response = JumpResponse::alternates}) {}
+              .jump_response = JumpResponse::undamped}) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
@@ -45,7 +45,7 @@ class Kane : public Scheme {
               .supports_step_changes = true,
               .supports_ranks = false,
               .conserves_moments_at_finite_strain = true,
-              .jump_response = JumpResponse::alternates}) {}
+              .jump_response = JumpResponse::undamped}) {}
   /// Fills the stage except its contact conditions.
   Stage& balance(const SemidiscreteProblem& problem, const State& state, StageSolve& stages);
   /// Adds the contact conditions.

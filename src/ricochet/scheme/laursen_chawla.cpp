@@ -17,10 +17,7 @@ namespace {
 class LaursenChawla final : public Scheme {
  public:
   explicit LaursenChawla(double step)
-      : Scheme(step, {.force_instant = -0.5,
-                      .acting_instant = -0.5,
-                      .supports_step_changes = true,
-                      .jump_response = JumpResponse::alternates}) {}
+      : Scheme(step, {.force_instant = -0.5, .supports_step_changes = true, .jump_response = JumpResponse::undamped}) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
@@ -39,8 +36,7 @@ class LaursenChawla final : public Scheme {
     const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
     equations_.prescribe(problem, state.time + h, half_way, stage);
     evaluate_obstacle_velocity(problem, base_, {middle, h}, stage);
-    require_no_approach(problem, state.displacement, state.time, state.velocity, stage.obstacle, h, stage);
-    stage.conditions.gap.factor = 2.0 / h;
+    require_no_approach(problem, state.displacement, state.time, state.velocity, 2.0 / h, stage.obstacle, h, stage);
     equations_.require_friction_beside_rates(problem, state.velocity, 2.0 / h, stage);
 
     const StageSolution& solution = stages.solve(0);

@@ -19,11 +19,10 @@ class Midpoint final : public Scheme {
  public:
   explicit Midpoint(double step)
       : Scheme(step, {.force_instant = -0.5,
-                      .acting_instant = -0.5,
                       .supports_step_changes = true,
                       .supports_nonlinear_force = true,
                       .conserves_moments_at_finite_strain = true,
-                      .jump_response = JumpResponse::alternates}) {}
+                      .jump_response = JumpResponse::undamped}) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();

@@ -25,7 +25,7 @@ class MoreauJean final : public Scheme {
                       .acting_instant = -0.5,
                       .supports_step_changes = true,
                       // V₁ = V₀ + (ΔU/h − V₀)/θ
-                      .jump_response = theta > 0.5 ? JumpResponse::fades : JumpResponse::alternates}),
+                      .jump_response = theta > 0.5 ? JumpResponse::damped : JumpResponse::undamped}),
         theta_(theta),
         restitution_(restitution),
         slip_at_end_(slip_at_end) {}
@@ -50,8 +50,7 @@ class MoreauJean final : public Scheme {
     work_displacement_ = state.displacement + (0.5 * h) * state.velocity;
     evaluate_obstacle_velocity(problem, work_displacement_, {state.time + 0.5 * h, h}, stage);
     equations_.require_impact_law(problem, work_displacement_, state.time + 0.5 * h, state.velocity, state.velocity,
-                                  restitution_, h, stage);
-    stage.conditions.gap.factor = 1.0 / (theta_ * h);
+                                  1.0 / (theta_ * h), restitution_, h, stage);
     equations_.require_friction_beside_rates(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
 
     const StageSolution& solution = stages.solve(0);

@@ -30,7 +30,7 @@ class Newmark final : public Scheme {
                       .suits_singular_mass = true,
                       // A node that friction holds is one whose displacement is prescribed: under the trapezoidal rule
                       // it keeps ±V.
-                      .stuck_nodes_alternate = newmark_jump_response({beta, gamma}) != JumpResponse::fades,
+                      .stuck_nodes_alternate = newmark_jump_response({beta, gamma}) != JumpResponse::damped,
                       .jump_response = newmark_jump_response({beta, gamma})}),
         beta_(beta),
         gamma_(gamma) {}
@@ -43,7 +43,7 @@ class Newmark final : public Scheme {
     if (!problem.has_singular_mass()) {
       return {
           .long_steps = {
-              .trouble =
+              .consequence =
                   "its contact and friction forces can create energy: with beta = 1/4, gamma = 1/2 and inertia at "
                   "contact nodes more than 1 % of the total was created in half of the random cases, with steps of any "
                   "length",
@@ -51,7 +51,7 @@ class Newmark final : public Scheme {
     }
     return {
         .long_steps = {
-            .trouble =
+            .consequence =
                 "its contact and friction forces can create energy: with beta = 1/4, gamma = 1/2 more than 1 % of the "
                 "total was created in one of eleven random cases at one to three crossings, in half of them at three "
                 "to ten, and in nine of ten beyond thirty"}};

@@ -100,8 +100,8 @@ void check_newmark(const ParameterCheck& check, Parameters& values) {
 
 JumpResponse newmark_jump_response(const NewmarkParameters& parameters) {
   const auto [beta, gamma] = parameters;
-  if (gamma < 0.5 || 2.0 * beta < gamma || (gamma == 0.5 && beta == 0.25)) return JumpResponse::grows;
-  return gamma == 0.5 || 2.0 * beta == gamma ? JumpResponse::alternates : JumpResponse::fades;
+  if (gamma < 0.5 || 2.0 * beta < gamma || (gamma == 0.5 && beta == 0.25)) return JumpResponse::unstable;
+  return gamma == 0.5 || 2.0 * beta == gamma ? JumpResponse::undamped : JumpResponse::damped;
 }
 
 NewmarkParameters newmark_parameters(const Parameters& values) {

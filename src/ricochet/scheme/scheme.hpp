@@ -10,11 +10,68 @@
 #include "ricochet/base/registry.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/last_step.hpp"
-#include "ricochet/scheme/scheme_traits.hpp"
 #include "ricochet/step/stage_solve.hpp"
 
 /// @file Time schemes. To add one: a file with a class and its registration, one line in registry.cpp, and its tests.
 namespace ricochet {
+
+/// Weights of a step's forces in the balance of energy:
+/// work of a force F over a step = incrementᵀ (previous_weight F_previous + current_weight F_current).
+struct WorkRule {
+  double previous_weight = 0.0;
+  double current_weight = 1.0;
+};
+
+/// Response of the forces at a prescribed displacement, at dofs with inertia, to a jump of its velocity, in the steps
+/// after it: the forces decay, keep oscillating from step to step, or grow.
+enum class JumpResponse { damped, undamped, unstable };
+
+/// Properties that hold for every problem, so that no caller has to know a scheme by name. Instants are the time of a
+/// quantity less that of its row of the history, in steps: −½ is the middle of the step just done.
+struct SchemeTraits {
+  double energy_instant = 0.0;  ///< of the displacement and velocity in the energies (Scheme::energy_state)
+  double force_instant = 0.0;   ///< of the forces shown
+  /// Instant of the forces that acted over a step, if not force_instant: its middle if those shown are of its end.
+  std::optional<double> acting_instant = {};
+  WorkRule work_rule = {};
+  /// Default number of steps between rows of the history: more than one if a row costs over half a step.
+  long history_every = 1;
+  /// True if steps of different lengths may follow one another: neither the state's memory nor energy_state() depends
+  /// on the last length, and advance() moves by step(). (algorithmic_energy() may: the account books the difference.)
+  bool supports_step_changes = false;
+  /// True if the scheme supports internal forces that are nonlinear in the displacement.
+  bool supports_nonlinear_force = false;
+  /// True if, in addition, its steps relax viscoelastic branches (viscous_force.hpp) and report their dissipation.
+  bool supports_relaxation = false;
+  /// True if the scheme supports a body divided among ranks: it operates on each rank's part and solves stages.
+  bool supports_ranks = true;
+  /// True if rigid bodies that move under the forces on them (free_motion.hpp) are part of its steps.
+  bool supports_free_bodies = false;
+  /// True if, at finite strain, its steps change the angular momentum about current positions only by the moments of
+  /// external forces about the positions at which these act.
+  bool conserves_moments_at_finite_strain = false;
+  /// True if its contact forces create hardly any energy with a mass without inertia on contact nodes.
+  bool suits_singular_mass = false;
+  /// True if nodes with inertia that friction holds keep a velocity of alternating sign.
+  bool stuck_nodes_alternate = false;
+  JumpResponse jump_response = JumpResponse::damped;
+};
+
+/// Consequence of a Courant number (steps per time in which a wave crosses a cell) above a limit.
+struct LongSteps {
+  double courant_limit = 1.0;
+  std::string consequence = {};    ///< end of a sentence that begins with such a step; empty: none known
+  bool shorter_steps_help = true;  ///< whether a shorter step is the remedy; otherwise another scheme is
+};
+
+/// Properties that depend on the problem.
+struct ProblemTraits {
+  /// Reactions that act on the body over a step, for schemes with a choice; none without contact.
+  std::optional<ActingReaction> acting_reactions = {};
+  LongSteps long_steps = {};
+  /// Key and value of the case file with which the scheme loses less energy in impacts; empty: none.
+  std::string less_dissipative_setting = {};
+};
 
 class Scheme {
  public:
@@ -24,6 +81,8 @@ class Scheme {
   Scheme& operator=(const Scheme&) = delete;
 
   [[nodiscard]] const SchemeTraits& traits() const { return traits_; }
+  /// Instant of the forces that acted over a step, relative to its end, in steps.
+  [[nodiscard]] double acting_instant() const { return traits_.acting_instant.value_or(traits_.force_instant); }
   /// Properties for this problem; those of the reactions are known after analyse().
   [[nodiscard]] virtual ProblemTraits traits_for(const SemidiscreteProblem&) const { return {}; }
   /// Limit on the step for this problem, before analyse(); none if every step is stable or the scheme refuses the

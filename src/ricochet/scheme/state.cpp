@@ -4,7 +4,6 @@
 #include <initializer_list>
 
 #include "ricochet/contact/row_values.hpp"
-
 #include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
@@ -54,6 +53,7 @@ void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> s
   Snapshot::Texts names;
   for (const auto& [key, values] : memory) names.push_back(key);
   visit("memory", names);
+  if (visit.loads()) memory.clear();
   for (const std::string& key : names) {
     Vector& values = memory[key];
     visit("memory." + key, values);

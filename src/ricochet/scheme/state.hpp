@@ -5,32 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/step/stage.hpp"
 
 /// @file State of a run between two steps: everything that the next step depends on.
 namespace ricochet {
 
 /// Forces at the scheme's instant of a step, as in its momentum equation.
-struct StepForces {
+struct StepForces : Reactions {
   std::shared_ptr<const ContactRows> rows;  ///< directions of the reactions: Gᵀ r_N − B_Tᵀ r_T is their nodal force
-  Vector normal_reaction;                   ///< r_N per contact point
-  Vector tangential_reaction;               ///< r_T, (d−1) per contact point; empty without friction
-  /// Mean reactions over the step, if these act on the body and the ones above hold at its end; else empty.
-  Vector mean_normal_reaction, mean_tangential_reaction;
-  double end_weight = 1.0;  ///< of the reactions at the end in that mean
-  Vector support_reaction;  ///< on supported dofs
-  Vector varying_load;      ///< varying part of L, per dof; empty without one
-  Vector damping_force;     ///< C times the scheme's velocity, per dof; empty without damping
-
-  /// Reactions that acted on the body over the step.
-  [[nodiscard]] const Vector& acting_normal() const {
-    return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
-  }
-  [[nodiscard]] const Vector& acting_tangential() const {
-    return mean_tangential_reaction.size() > 0 ? mean_tangential_reaction : tangential_reaction;
-  }
+  Vector varying_load;                      ///< varying part of L, per dof; empty without one
+  Vector damping_force;                     ///< C times the scheme's velocity, per dof; empty without damping
 };
 
 struct State {

@@ -9,9 +9,9 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
   problem.internal_force->evaluate(base, force_);
   problem.loads.total(time, stage.right_hand_side.force);
   if (problem.pressure) problem.pressure->add_force(base, time, stage.right_hand_side.force);
-  stage.linearization.pressure.time = time;
+  stage.linearization.load_time = time;
   stage.right_hand_side.force -= force_;
-  if (!problem.internal_force->is_linear()) stage.linearization.base = base;
+  if (!problem.internal_force->is_linear()) stage.linearization.displacement = base;
 }
 
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
@@ -24,7 +24,7 @@ void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vecto
                                  const Vector& velocity, Stage& stage) {
   problem.internal_force->evaluate(base, force_);
   stage.right_hand_side.force = load - force_;
-  if (!problem.internal_force->is_linear()) stage.linearization.base = base;
+  if (!problem.internal_force->is_linear()) stage.linearization.displacement = base;
   resist(problem, velocity, stage);
 }
 
@@ -43,13 +43,13 @@ void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vecto
 }
 
 void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& displacement, double time,
-                                       const Vector& after, const Vector& before, double restitution, double step,
-                                       Stage& stage) {
+                                       const Vector& after, const Vector& before, double gap_factor, double restitution,
+                                       double step, Stage& stage) {
   impact_ = stage.obstacle;
   impact_.normal *= 1.0 + restitution;
   impact_.in_space *= 1.0 + restitution;
   rate_ = after + restitution * before;
-  require_no_approach(problem, displacement, time, rate_, impact_, step, stage);
+  require_no_approach(problem, displacement, time, rate_, gap_factor, impact_, step, stage);
 }
 
 void StepEquations::require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
@@ -81,8 +81,9 @@ void StepEquations::store_contact(const Stage& stage, const StageSolution& solut
   state.contact_status = solution.contact_status;
 }
 
-void StepEquations::store_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
-                               double step, const Vector& motion, double rate, StepPart& part) const {
+void StepEquations::store_other_stage(const SemidiscreteProblem& problem, const Stage& stage,
+                                      const StageSolution& solution, double step, const Vector& motion, double rate,
+                                      OtherStageForces& part) const {
   store_reactions(stage, solution, step, part.forces, part.obstacle_increment);
   store_loads(problem, solution, motion, rate, part.forces);
 }
@@ -99,12 +100,7 @@ void StepEquations::store_loads(const SemidiscreteProblem& problem, const StageS
 void StepEquations::store_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
                                     ObstacleMotion& travel) {
   if (forces.rows != stage.rows) forces.rows = stage.rows;
-  forces.normal_reaction = solution.normal_reaction;
-  forces.tangential_reaction = solution.tangential_reaction;
-  forces.mean_normal_reaction = solution.mean_normal_reaction;
-  forces.mean_tangential_reaction = solution.mean_tangential_reaction;
-  forces.end_weight = solution.end_weight;
-  forces.support_reaction = solution.support_reaction;
+  static_cast<Reactions&>(forces) = solution;
   if (stage.obstacle.normal.size() == 0) return;
   travel.normal = step * stage.obstacle.normal;
   travel.tangential = step * stage.obstacle.tangential;

@@ -49,10 +49,11 @@ class StepEquations {
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
                     double step, Stage& stage);
   /// Imposes Newton's impact law at the points that touch at `displacement` and `time`, with the obstacles observed and
-  /// one coefficient of restitution e: y = G (after + s δ) + e G before, for velocities relative to the obstacles.
-  /// Velocities are differences of displacements over `step`. The caller sets s.
+  /// one coefficient of restitution e: y = G (after + gap_factor δ) + e G before, for velocities relative to the
+  /// obstacles. Velocities are differences of displacements over `step`.
   void require_impact_law(const SemidiscreteProblem& problem, const Vector& displacement, double time,
-                          const Vector& after, const Vector& before, double restitution, double step, Stage& stage);
+                          const Vector& after, const Vector& before, double gap_factor, double restitution, double step,
+                          Stage& stage);
   /// Imposes Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the observed obstacles, in
   /// stages in which y is a velocity, too: both have the rounding of displacements over a step.
   static void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
@@ -68,8 +69,8 @@ class StepEquations {
   /// Transfers the contact data alone.
   static void store_contact(const Stage& stage, const StageSolution& solution, double step, State& state);
   /// Transfers, like store_forces(), the forces of a stage that are not those of the state.
-  void store_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
-                  const Vector& motion, double rate, StepPart& part) const;
+  void store_other_stage(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                         double step, const Vector& motion, double rate, OtherStageForces& part) const;
 
  private:
   /// Subtracts the damping force C v from the right-hand side.

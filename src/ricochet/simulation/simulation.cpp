@@ -224,7 +224,7 @@ void Simulation::solve_step() {
     if (problem.kind() != ErrorKind::not_converged || problem_.internal_force->is_linear()) throw;
     log::debug(fmt::format("{}: attempting the step again, with the tangent at its start", problem.what()));
   }
-  renew(state_.displacement, state_.displacement);
+  renew_operators(state_.displacement, state_.displacement);
   attempt_step();
 }
 

@@ -91,9 +91,9 @@ class Simulation : private StageSolve {
   void take_trial_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
-  void follow(const Vector& displacement) override { current_->solver->follow(displacement); }
-  void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
-    current_->solver->renew(displacement, of_contact_nodes);
+  void rotate_operators(const Vector& displacement) override { current_->solver->rotate_operators(displacement); }
+  void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
+    current_->solver->renew_operators(displacement, of_contact_nodes);
   }
 
   const SemidiscreteProblem& problem_;

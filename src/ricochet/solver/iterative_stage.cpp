@@ -38,18 +38,16 @@ constexpr int iterations_for_multigrid = 600;
 class IterativeStage final : public StageSolver {
  public:
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                 const StepSolverOptions& options, FactoredStage* condensed, GatheredContact* gathered);
+                 const StepSolverOptions& options, SharedContact& shared, FactoredStage* condensed,
+                 GatheredContact* gathered);
 
   void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override {
     if (touches_) subdomains_->report();
   }
-  void observe_contact(const ContactObserver& observer) override { subdomains_->observe(observer); }
   void persist(const SnapshotVisitor& visit) override;
-  [[nodiscard]] double contact_seconds() const override { return subdomains_->contact_seconds(); }
   [[nodiscard]] IterationCounts iteration_counts() const override { return counts_; }
-  [[nodiscard]] std::size_t factor_entries() const override { return subdomains_->factor_entries(); }
 
  private:
   void make_preconditioner();
@@ -98,7 +96,8 @@ class IterativeStage final : public StageSolver {
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                               const StepSolverOptions& options, FactoredStage* condensed, GatheredContact* gathered)
+                               const StepSolverOptions& options, SharedContact& shared, FactoredStage* condensed,
+                               GatheredContact* gathered)
     : problem_(problem),
       coefficients_(coefficients),
       options_(options),
@@ -106,11 +105,11 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
       candidates_(problem.contact.size(), *problem.ranks),
       neighbourhood_(problem) {
   if (gathered != nullptr) {
-    subdomains_ = make_gathered_subdomains(problem, coefficients, solved_, product_, neighbourhood_, options.all_points,
-                                           *gathered, condensed);
+    subdomains_ = make_gathered_subdomains(problem, coefficients, solved_, product_, neighbourhood_, shared, *gathered,
+                                           condensed);
   } else {
-    subdomains_ = std::make_unique<Subdomains>(problem, coefficients, solved_, product_, neighbourhood_,
-                                               options.all_points, condensed);
+    subdomains_ =
+        std::make_unique<Subdomains>(problem, coefficients, solved_, product_, neighbourhood_, shared, condensed);
   }
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
@@ -157,7 +156,7 @@ void IterativeStage::make_preconditioner() {
 
 /// Replaces diagonal blocks, which need too many iterations, by multigrid. All ranks see the same number.
 bool IterativeStage::switch_to_multigrid() {
-  const std::string& multigrid = preconditioner_of_long_steps();
+  const std::string& multigrid = fallback_preconditioner();
   if (options_.preconditioner != "auto" || !options_.preconditioners || kind_ == multigrid) return false;
   kind_ = multigrid;
   log::info("the step is long for the mesh: iterations are preconditioned by multigrid (" + kind_ + ") from now on");
@@ -205,7 +204,9 @@ void IterativeStage::persist(const SnapshotVisitor& visit) {
   visit("has_previous", has_previous_);
   std::string kind = kind_;
   visit("preconditioner", kind);
-  if (visit.loads() && kind == preconditioner_of_long_steps()) switch_to_multigrid();
+  if (visit.loads() && kind != kind_)
+    visit.require(kind == fallback_preconditioner() && switch_to_multigrid(), "preconditioner",
+                  "is not the one of this run");
   bool has_subdomains = subdomains_->are_made();
   visit("has_zone", has_subdomains);
   if (has_subdomains) {
@@ -234,7 +235,7 @@ void IterativeStage::begin(const LinearStage& stage, StageSolution& solution) {
   if (!problem_.ranks->any(is_loaded)) guess_.setZero();
   solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? problem_.dimension - 1 : 0);
   std::vector<Index> pressing;
-  if (coefficients_.condensed_operator >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
+  if (coefficients_.condensed_operator >= 0) pressing = pressing_at_start(coefficients_.acting, stage);
   const Ranks& ranks = *problem_.ranks;
   presses_at_start_ = ranks.any(!pressing.empty());
   candidates_.estimate_reach(stage.conditions);
@@ -386,9 +387,9 @@ void IterativeStage::end(const LinearStage& stage, StageSolution& solution) {
 
 std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                   const OperatorCoefficients& coefficients,
-                                                  const StepSolverOptions& options, FactoredStage* condensed,
-                                                  GatheredContact* gathered) {
-  return std::make_unique<IterativeStage>(problem, coefficients, options, condensed, gathered);
+                                                  const StepSolverOptions& options, SharedContact& shared,
+                                                  FactoredStage* condensed, GatheredContact* gathered) {
+  return std::make_unique<IterativeStage>(problem, coefficients, options, shared, condensed, gathered);
 }
 
 }  // namespace ricochet

@@ -13,7 +13,7 @@ class GatheredContact;
 /// required on several ranks with contact on some; `condensed_stage` is then at its root.
 [[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                                 const OperatorCoefficients& coefficients,
-                                                                const StepSolverOptions& options,
+                                                                const StepSolverOptions& options, SharedContact& shared,
                                                                 FactoredStage* condensed_stage = nullptr,
                                                                 GatheredContact* gathered = nullptr);
 

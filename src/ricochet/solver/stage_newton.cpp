@@ -9,22 +9,17 @@ namespace ricochet {
 
 void StageNewton::store_stage(const Stage& stage) {
   linearization_ = stage.linearization;
-  evaluate(linearization_.base, force_at_base_);
+  evaluate(linearization_.displacement, force_at_base_);
   right_hand_side_ = stage.right_hand_side;
-  gap_offset_ = stage.conditions.gap.offset;
-  slip_offset_ = stage.conditions.slip.offset;
-  if (!stage.motion) return;
-  motion_ = stage.motion->displacement;
-  velocity_ = stage.motion->velocity;
-  if (stage.motion->reevaluates_obstacles) observed_ = stage.motion->obstacle_displacement;
+  conditions_ = stage.conditions;
+  motion_ = stage.motion;
 }
 
 void StageNewton::evaluate(const Vector& displacement, Vector& force) {
   problem_.internal_force->evaluate(displacement, force);
   if (!problem_.pressure) return;
   follower_load_.setZero(force.size());
-  problem_.pressure->add_force(displacement, linearization_.pressure.time, follower_load_,
-                               linearization_.pressure.part);
+  problem_.pressure->add_force(displacement, linearization_.load_time, follower_load_, linearization_.load_part);
   force -= follower_load_;
 }
 
@@ -38,12 +33,12 @@ void StageNewton::correct(const Vector& correction) {
 /// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
 void StageNewton::update_internal_force(double factor) {
   for (int halving = 0;; ++halving) {
-    displacement_ = linearization_.base + factor * total_;
+    displacement_ = linearization_.displacement + factor * total_;
     try {
       evaluate(displacement_, force_);
       return;
     } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+      if (problem.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
     }
     total_ = 0.5 * (total_ + before_);
   }
@@ -62,27 +57,23 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
   for (Index i = 0; i < problem_.supports.size(); ++i)
     stage.right_hand_side.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
   if (stage.motion) {
-    stage.motion->displacement = motion_ + stage.conditions.gap.factor * total_;
-    if (stage.conditions.slip.offset.size() > 0)
-      stage.motion->velocity = velocity_ + stage.conditions.slip.factor * total_;
-    if (stage.motion->reevaluates_obstacles)
-      stage.motion->obstacle_displacement = observed_ + stage.motion->instant.factor * total_;
+    stage.motion->move_origin(*motion_, conditions_, total_);
     zero_motion_.setZero(total_.size());
     linearize_contact(problem_, zero_motion_, stage);
     return;
   }
   stage.rows->normal_motion(total_, stage.conditions.gap.offset);
-  stage.conditions.gap.offset = gap_offset_ + stage.conditions.gap.factor * stage.conditions.gap.offset;
+  stage.conditions.gap.offset = conditions_.gap.offset + stage.conditions.gap.factor * stage.conditions.gap.offset;
   if (stage.conditions.slip.offset.size() == 0) return;
   stage.rows->tangential_motion(total_, stage.conditions.slip.offset);
-  stage.conditions.slip.offset = slip_offset_ + stage.conditions.slip.factor * stage.conditions.slip.offset;
+  stage.conditions.slip.offset = conditions_.slip.offset + stage.conditions.slip.factor * stage.conditions.slip.offset;
 }
 
 void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
                         Stage& stage, StageSolution& solution) {
   store_stage(stage);
   total_.setZero(problem_.dof_count());
-  const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.base.lpNorm<Eigen::Infinity>();
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.displacement.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
   acceleration_.restart();
   before_ = total_;
@@ -93,7 +84,7 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
     const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
                                                              : std::numeric_limits<double>::infinity();
     const NewtonProgress::Advice advice =
-        progress_.judge(correction, (total_ + solution.increment).lpNorm<Eigen::Infinity>());
+        progress_.assess(correction, (total_ + solution.increment).lpNorm<Eigen::Infinity>());
     if (advice == NewtonProgress::Advice::done) {
       total_ += solution.increment;
       break;
@@ -111,10 +102,10 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
   }
   solution.increment = total_;
   if (problem_.pressure) {
-    displacement_ = linearization_.base + coefficients.stiffness * total_;
+    displacement_ = linearization_.displacement + coefficients.stiffness * total_;
     solution.follower_load.setZero(total_.size());
-    problem_.pressure->add_force(displacement_, linearization_.pressure.time, solution.follower_load,
-                                 linearization_.pressure.part);
+    problem_.pressure->add_force(displacement_, linearization_.load_time, solution.follower_load,
+                                 linearization_.load_part);
   }
   solution.iterations = iterations;
   solution.newton_iterations = progress_.iterations();

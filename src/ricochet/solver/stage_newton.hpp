@@ -39,7 +39,9 @@ class StageNewton {
   // Data of the stage at δ = 0:
   ForceLinearization linearization_;
   RightHandSide right_hand_side_;
-  Vector force_at_base_, gap_offset_, slip_offset_, motion_, velocity_, observed_;
+  ContactConditions conditions_;
+  std::optional<ContactMotion> motion_;
+  Vector force_at_base_;
 };
 
 }  // namespace ricochet

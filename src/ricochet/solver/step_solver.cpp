@@ -42,7 +42,11 @@ class StagesStepSolver final : public StepSolver {
  public:
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
                    const StepSolverOptions& options)
-      : problem_(problem), operators_(operators), tangent_iterations_(problem), newton_(problem) {
+      : problem_(problem),
+        operators_(operators),
+        shared_{.all_points = options.all_points},
+        tangent_iterations_(problem),
+        newton_(problem) {
     if (!problem.internal_force->is_linear()) frame_ = std::make_unique<CorotatedFrame>(problem);
     const bool is_divided = problem.ranks->are_several();
     if (is_divided && problem.ranks->any(problem.contact.size() > 0))
@@ -62,11 +66,11 @@ class StagesStepSolver final : public StepSolver {
       solver.solve(linear.linear(), result);
       if (linear.motion) tangent_iterations_.follow_motion(solver, linear, result);
     };
-    if (stage.linearization.base.size() > 0) {
-      follow(stage.linearization.base);
+    if (stage.linearization.displacement.size() > 0) {
+      rotate_operators(stage.linearization.displacement);
       newton_.solve(
-          operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement, displacement); },
-          stage, solution);
+          operators_[number], solve_linear,
+          [this](const Vector& displacement) { renew_operators(displacement, displacement); }, stage, solution);
     } else {
       solve_linear(stage, solution);
       solution.newton_iterations = 1;
@@ -76,7 +80,7 @@ class StagesStepSolver final : public StepSolver {
   void refactorize(std::size_t number, const Vector& displacement) override {
     stages_.at(number)->refactorize(displacement);
   }
-  void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
+  void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
     if (problem_.pressure) factor_pressure_ = problem_.pressure->last();
     if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
         !go_half_way(displacement, of_contact_nodes)) {
@@ -88,25 +92,15 @@ class StagesStepSolver final : public StepSolver {
     frame_->restart(factor_displacement_);
     frame_->follow(displacement);
   }
-  void follow(const Vector& displacement) override {
+  void rotate_operators(const Vector& displacement) override {
     if (frame_) frame_->follow(displacement);
   }
-  void observe_contact(const ContactObserver& observer) override {
-    for (const auto& stage : stages_) stage->observe_contact(observer);
-  }
-  [[nodiscard]] double contact_seconds() const override {
-    double sum = 0.0;
-    for (const auto& stage : stages_) sum += stage->contact_seconds();
-    return sum;
-  }
+  void observe_contact(const ContactObserver& observer) override { shared_.observer = observer; }
+  [[nodiscard]] double contact_seconds() const override { return shared_.solver_seconds; }
+  [[nodiscard]] std::size_t factor_entries() const override { return shared_.factor_entries; }
   [[nodiscard]] IterationCounts iteration_counts() const override {
     IterationCounts sum;
     for (const auto& stage : stages_) sum += stage->iteration_counts();
-    return sum;
-  }
-  [[nodiscard]] std::size_t factor_entries() const override {
-    std::size_t sum = 0;
-    for (const auto& stage : stages_) sum += stage->factor_entries();
     return sum;
   }
   void persist(const SnapshotVisitor& visit) override {
@@ -129,12 +123,11 @@ class StagesStepSolver final : public StepSolver {
     visit("contact_made_at", contact_made_at, made_at.size());
     FollowerPressure::Instant last;
     if (pressure != nullptr) {
-      FollowerPressure::Instant at_factor = factor_pressure_;
       last = pressure->last();
-      visit.numbers("pressure_at", at_factor.time, at_factor.part, last.time, last.part);
-      if (visit.loads()) pressure->set_last(at_factor);
+      visit.numbers("pressure_at", factor_pressure_.time, factor_pressure_.part, last.time, last.part);
+      if (visit.loads()) pressure->set_last(factor_pressure_);
     }
-    if (visit.loads() && made_at.size() > 0) renew(made_at, contact_made_at);
+    if (visit.loads() && made_at.size() > 0) renew_operators(made_at, contact_made_at);
     if (visit.loads() && pressure != nullptr) pressure->set_last(last);
     frame_->persist(visit.part("frame"));
   }
@@ -168,19 +161,20 @@ class StagesStepSolver final : public StepSolver {
     for (std::size_t i = 0; i < stages_.size(); ++i)
       stages_[i]->refactorize(operators_[i].dofs == StageDofs::contact ? of_contact_nodes : displacement);
   }
+  [[nodiscard]] FactoredStage* condensed_stage_of(const OperatorCoefficients& coefficients) const {
+    const int number = coefficients.condensed_operator;
+    return number >= 0 ? stages_.at(static_cast<std::size_t>(number))->factored() : nullptr;
+  }
   /// Adds a stage of a body on several ranks, which has a factor only on the dofs of contact nodes.
   void add_divided_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          const StepSolverOptions& options) {
     if (coefficients.dofs == StageDofs::contact) {
-      stages_.push_back(make_gathered_stage(problem, coefficients, options, *gathered_));
+      stages_.push_back(make_gathered_stage(problem, coefficients, shared_, *gathered_));
       methods_.push_back({.method = SolverMethod::direct, .reason = "solved on one of the processes"});
       return;
     }
-    FactoredStage* const condensed_stage =
-        coefficients.condensed_operator >= 0
-            ? stages_.at(static_cast<std::size_t>(coefficients.condensed_operator))->factored()
-            : nullptr;
-    stages_.push_back(make_iterative_stage(problem, coefficients, options, condensed_stage, gathered_.get()));
+    FactoredStage* const condensed_stage = condensed_stage_of(coefficients);
+    stages_.push_back(make_iterative_stage(problem, coefficients, options, shared_, condensed_stage, gathered_.get()));
     const std::string kind = options.preconditioner == "auto" ? "" : ", preconditioned by " + options.preconditioner;
     methods_.push_back({.method = SolverMethod::iterative, .reason = "the body is divided among processes" + kind});
   }
@@ -204,19 +198,16 @@ class StagesStepSolver final : public StepSolver {
       chosen.ordering_seconds = timer.restart();
       if (chosen.method == SolverMethod::iterative) log_iterations(chosen);
     }
-    FactoredStage* const condensed_stage =
-        coefficients.condensed_operator >= 0
-            ? stages_.at(static_cast<std::size_t>(coefficients.condensed_operator))->factored()
-            : nullptr;
+    FactoredStage* const condensed_stage = condensed_stage_of(coefficients);
     if (coefficients.condensed_operator >= 0 && condensed_stage == nullptr)
       throw std::logic_error("the contact nodes of a stage need a factor, but their operator is solved by iterations");
     if (chosen.method == SolverMethod::direct) {
       log_factorization(chosen, analysed.dofs.size());
-      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options, condensed_stage));
+      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), shared_, condensed_stage));
       chosen.factorization_seconds = timer.seconds();
     } else {
       analysed = {};
-      stages_.push_back(make_iterative_stage(problem, coefficients, options, condensed_stage));
+      stages_.push_back(make_iterative_stage(problem, coefficients, options, shared_, condensed_stage));
     }
     if (frame_) stages_.back() = make_corotated_stage(std::move(stages_.back()), *frame_);
     methods_.push_back(chosen);
@@ -224,6 +215,7 @@ class StagesStepSolver final : public StepSolver {
 
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
+  SharedContact shared_;
   std::unique_ptr<CorotatedFrame> frame_;  ///< null if the internal force is linear
   Vector factor_displacement_,
       contact_factor_displacement_;            ///< displacement of the factors; empty: the undeformed body

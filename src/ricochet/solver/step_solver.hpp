@@ -26,10 +26,10 @@ class StepSolver {
   /// Refactorizes all stages, those of contact nodes alone at another displacement, with the pressure of the last
   /// forces. If some operator is not positive definite there, all are made without the pressure, or at half of the
   /// displacement, or finally for the undeformed body, rotated with the bodies.
-  virtual void renew(const Vector& displacement, const Vector& of_contact_nodes) = 0;
+  virtual void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) = 0;
   /// For a nonlinear internal force: rotates the operators with bodies at this displacement. (solve() does so itself
-  /// for a stage with a force_base.)
-  virtual void follow(const Vector& displacement) = 0;
+  /// for a stage with a linearization.displacement.)
+  virtual void rotate_operators(const Vector& displacement) = 0;
   /// Shows every contact problem solved from now on, with its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Time spent in contact solvers so far, for the summary.

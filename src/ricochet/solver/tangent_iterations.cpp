@@ -32,21 +32,21 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     const double error =
         iteration <= thresholds_.plain_iterations ? remaining.beyond_rounding : remaining.beyond_all_rounding;
     if (error <= 0.0) break;
-    if (error < 0.9 * best_error) {
+    if (error < thresholds_.progress * best_error) {
       best_error = error;
       last_progress = iteration;
     }
     const bool is_last =
-        iteration == thresholds_.max_iterations || iteration - last_progress > thresholds_.patience_of_iterations;
+        iteration == thresholds_.max_iterations || iteration - last_progress > thresholds_.max_stalled_iterations;
     const Vector& rounding = stage.conditions.gap.rounding;
     const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
-    if (iteration >= thresholds_.patient_iterations && iteration - last_progress >= thresholds_.patience_of_rounding &&
-        of_rounding <= thresholds_.remaining_rounding)
+    if (iteration >= thresholds_.rounding_iterations && iteration - last_progress >= thresholds_.max_stalled_rounding &&
+        of_rounding <= thresholds_.max_rounding)
       break;
-    if (iteration >= thresholds_.last_iterations && of_rounding <= thresholds_.max_remaining_rounding) break;
+    if (iteration >= thresholds_.last_iterations && of_rounding <= thresholds_.max_last_rounding) break;
     // Pairs change from iteration to iteration: they are held, and the next iteration solves the then linear
     // conditions.
-    const bool is_stuck = iteration - last_progress > thresholds_.patience_of_pairs || !std::isfinite(error) ||
+    const bool is_stuck = iteration - last_progress > thresholds_.max_stalled_pairs || !std::isfinite(error) ||
                           iteration == thresholds_.max_iterations;
     if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->freeze()) {
       best_error = std::numeric_limits<double>::infinity();
@@ -64,7 +64,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
                               iteration, best_error));
     }
     if (iteration == thresholds_.plain_iterations ||
-        iteration - std::max(last_progress, last_start) > thresholds_.patience_of_acceleration) {
+        iteration - std::max(last_progress, last_start) > thresholds_.max_stalled_acceleration) {
       acceleration_.restart();
       last_start = iteration;
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace ricochet {
 
@@ -70,26 +72,27 @@ constexpr double same_velocity = 1e-10;
 /// Computes the obstacle velocities at the contact points displaced by an increment.
 void obstacle_velocity_at(const SemidiscreteProblem& problem, const Vector& increment, ContactMotion& motion,
                           ObstacleMotion& velocity) {
-  motion.solution = motion.obstacle_displacement + motion.instant.factor * increment;
-  problem.obstacle_velocity(motion.solution, motion.instant.time, motion.instant.span, velocity);
+  motion.work.displacement = motion.obstacle_displacement + motion.obstacle_instant.factor * increment;
+  problem.obstacle_velocity(motion.work.displacement, motion.obstacle_instant.time, motion.obstacle_instant.span,
+                            velocity);
 }
 
 /// Largest difference, as a motion over the step, between the obstacle velocities at the solution and those used in its
 /// conditions, at points that carry a force. Negative if they agree.
 double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& increment,
                       const Stage& stage, ContactMotion& motion) {
-  obstacle_velocity_at(problem, increment, motion, motion.obstacle);
-  project_motion(*stage.rows, motion.obstacle);
+  obstacle_velocity_at(problem, increment, motion, motion.work.obstacle);
+  project_motion(*stage.rows, motion.work.obstacle);
   const bool has_friction = stage.conditions.slip.offset.size() > 0;
   const double duration =
-      has_friction ? stage.conditions.gap.factor / stage.conditions.slip.factor : motion.instant.span;
+      has_friction ? stage.conditions.gap.factor / stage.conditions.slip.factor : motion.obstacle_instant.span;
   const Index tangents = problem.dimension - 1;
   double error = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < problem.contact.size(); ++i) {
     if (!(solution.normal_reaction[i] > 0.0)) continue;
-    const auto along = motion.obstacle.tangential.segment(i * tangents, tangents);
-    const double speed = std::hypot(motion.obstacle.normal[i], along.norm());
-    const double wrong = std::hypot(motion.obstacle.normal[i] - stage.obstacle.normal[i],
+    const auto along = motion.work.obstacle.tangential.segment(i * tangents, tangents);
+    const double speed = std::hypot(motion.work.obstacle.normal[i], along.norm());
+    const double wrong = std::hypot(motion.work.obstacle.normal[i] - stage.obstacle.normal[i],
                                     (along - stage.obstacle.tangential.segment(i * tangents, tangents)).norm());
     const double rounding = has_friction ? stage.conditions.slip.rounding[i] : 0.0;
     error = std::max(error, duration * (wrong - same_velocity * speed - rounding));
@@ -102,10 +105,11 @@ double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& s
 void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& displacement,
                                 const ObstacleInstant& instant, Stage& stage) {
   problem.obstacle_velocity(displacement, instant.time, instant.span, stage.obstacle);
+  stage.has_obstacle_velocity = true;
   if (!stage.motion || !problem.has_rotating_obstacles()) return;
   stage.motion->reevaluates_obstacles = true;
   stage.motion->obstacle_displacement = displacement;
-  stage.motion->instant = instant;
+  stage.motion->obstacle_instant = instant;
 }
 
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
@@ -130,9 +134,11 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
 }
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
-                         const Vector& velocity, ObstacleMotion& obstacle, double step, Stage& stage) {
+                         const Vector& velocity, double gap_factor, ObstacleMotion& obstacle, double step,
+                         Stage& stage) {
   update_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
+  stage.conditions.gap.factor = gap_factor;
   problem.gaps(displacement, time, stage.conditions.gap.offset);
   // A displacement is the sum of its increments, and this condition on velocities corrects none of their rounding
   // errors: a point that slides or rests drifts by one unit of rounding per step.
@@ -153,6 +159,8 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
 
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor, Stage& stage) {
   if (!problem.contact.has_friction()) return;
+  if (!std::exchange(stage.has_obstacle_velocity, false) && problem.has_moving_obstacles())
+    throw std::logic_error("evaluate_obstacle_velocity() has not been called before require_friction()");
   stage.conditions.slip.factor = slip_factor;
   project_motion(*stage.rows, stage.obstacle);
   compute_slip_offset(problem, velocity, stage.obstacle.tangential, stage);
@@ -161,13 +169,13 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
   ContactMotion& motion = *stage.motion;
-  motion.solution = motion.displacement + stage.conditions.gap.factor * increment;
+  motion.work.displacement = motion.displacement + stage.conditions.gap.factor * increment;
   const StepStart start{motion.start, motion.start_time};
-  update_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
+  update_rows(problem, motion.work.displacement, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
   set_eligible(problem, stage);
-  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.conditions.gap.offset);
-  stage.rows->normal_motion(increment, motion.gap_change);
-  stage.conditions.gap.offset -= stage.conditions.gap.factor * motion.gap_change;
+  compute_gaps(problem, motion.work.displacement, motion.time, motion.start.size() > 0, stage.conditions.gap.offset);
+  stage.rows->normal_motion(increment, motion.work.gap_change);
+  stage.conditions.gap.offset -= stage.conditions.gap.factor * motion.work.gap_change;
   if (motion.reevaluates_obstacles) obstacle_velocity_at(problem, increment, motion, stage.obstacle);
   project_motion(*stage.rows, stage.obstacle);
   if (stage.conditions.slip.offset.size() == 0) return;
@@ -178,24 +186,24 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
                                        Vector& gap) {
   ContactMotion& motion = *stage.motion;
   const Vector& increment = solution.contact_motion();
-  motion.solution = motion.displacement + stage.conditions.gap.factor * increment;
-  compute_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, gap);
-  stage.rows->normal_motion(increment, motion.gap_change);
-  problem.trace_rounding(increment, motion.gap_change_rounding);
+  motion.work.displacement = motion.displacement + stage.conditions.gap.factor * increment;
+  compute_gaps(problem, motion.work.displacement, motion.time, motion.start.size() > 0, gap);
+  stage.rows->normal_motion(increment, motion.work.gap_change);
+  problem.trace_rounding(increment, motion.work.gap_change_rounding);
   constexpr double none = -std::numeric_limits<double>::infinity();
   LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.conditions.eligible[static_cast<std::size_t>(i)] == 0) continue;
     // The residual of the linear condition is the solver's and is there for any rows; it is not a linearization error.
     const double beside =
-        std::abs(gap[i] - (stage.conditions.gap.offset[i] + stage.conditions.gap.factor * motion.gap_change[i]));
+        std::abs(gap[i] - (stage.conditions.gap.offset[i] + stage.conditions.gap.factor * motion.work.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
     const double rounding = stage.conditions.gap.rounding[i];
     error.beyond_rounding = std::max(error.beyond_rounding, wrong - rounding);
     // Both gaps are rounded, and the contribution of the increment is subtracted and added again.
     error.beyond_all_rounding =
         std::max(error.beyond_all_rounding,
-                 wrong - 2.0 * (rounding + stage.conditions.gap.factor * motion.gap_change_rounding[i]));
+                 wrong - 2.0 * (rounding + stage.conditions.gap.factor * motion.work.gap_change_rounding[i]));
   }
   if (motion.reevaluates_obstacles) {
     const double obstacle = obstacle_error(problem, solution, increment, stage, motion);

@@ -2,13 +2,11 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
 #include "ricochet/contact/contact_rows.hpp"
-#include "ricochet/problem/follower_pressure.hpp"
 
 /// @file Interface between time schemes and step solvers: a step consists of one or more contact problems.
 ///
@@ -20,12 +18,13 @@
 /// written in increments, no digits are lost between large inertia terms that cancel, and the energy balance closes to
 /// rounding. Schemes do not depend on how a stage is solved; step solvers do not depend on time.
 ///
-/// If the contact nodes have no inertia, a stage may impose its conditions at the end of a step whose forces
-/// are those of its midpoint. With A_c, the operator of a preceding stage on the contact dofs, ρ = (r_N, −r_T)
-/// and H = [G; B_T], forces ρ̄ then act on the body, and the contact conditions hold for ρ and the contact
-/// motion m instead of δ, with s = 2:
+/// If the contact nodes have no inertia, a stage may impose its conditions at the end of a step whose forces are those
+/// of its midpoint. Let A_c be the operator of a preceding stage on the contact dofs, ρ = (r_N, −r_T) the reactions and
+/// H = [G; B_T] the rows of all points. The acting reactions ρ̄ are ρ or a mean of the reactions over the step
+/// (ActingReaction). They act on the body, while the contact conditions hold for ρ and, with s = 2, for the contact
+/// motion m in place of δ:
 ///   A δ = b + Hᵀ ρ̄ + support reactions,   m = δ − ½ A_c⁻¹ Hᵀ (ℓ ρ + 2 (ρ̄ − ρ)).
-/// ρ̄ is ρ or a mean of the reactions over the step (ReactionMean). docs/energy.md gives the reasons.
+/// ℓ is 1 without stiffness damping. docs/energy.md gives the reasons.
 namespace ricochet {
 
 /// Dofs for which a stage solves; δ is zero on all others unless a support prescribes it.
@@ -36,62 +35,66 @@ enum class StageDofs {
 };
 
 /// Definition of ρ̄, the reactions on the body over a stage with massless contact nodes.
-enum class ReactionMean : char {
-  end,   ///< ρ
-  path,  ///< the mean of the reactions along the path: the gaps without them go straight from the start to the end
-  mixed  ///< (1−μ) path + μ ρ with the smallest μ that keeps the reactions smooth, see mean_reaction.hpp
+enum class ActingReaction : char {
+  end,        ///< ρ
+  path_mean,  ///< the mean of the reactions over a step in which the gaps without reactions change linearly
+  /// (1−μ) path_mean + μ ρ with the least μ in [0, 1] for which a sustained reaction does not alternate from step to
+  /// step: the factor from one to the next is at least −½ without friction, and at least 0 with it
+  mixed_mean
 };
 
-/// A = mass·M + stiffness·K + damping·C, constant over a run.
+/// A = mass·M + stiffness·K + damping·C, constant for one step length. At finite strain K is the tangent of the last
+/// refactorization.
 struct OperatorCoefficients {
   double mass = 0.0;       ///< α
   double stiffness = 0.0;  ///< κ
   double damping = 0.0;    ///< η
   StageDofs dofs = StageDofs::all;
-  int condensed_operator =
-      -1;  ///< index of the operator A_c on the contact dofs, which precedes this one; −1 if the stage has none
-  double condensed_weight = 1.0;  ///< ℓ
-  ReactionMean mean = ReactionMean::end;
-  /// h if stress of viscoelastic branches relaxes over the stage (viscous_force.hpp): K then contains
-  /// their stiffness. 0 if it does not.
+  /// Index of the operator A_c on the contact dofs, which precedes this one; −1 if the stage has none.
+  int condensed_operator = -1;
+  double condensed_weight = 1.0;  ///< ℓ, factor of ρ in m, 0 < ℓ ≤ 1
+  ActingReaction acting = ActingReaction::end;
+  /// h if stress of viscoelastic branches relaxes over the stage (viscous_force.hpp): K then contains the tangent of
+  /// their forces over a step of this length. 0 if it does not.
   double relaxation_step = 0.0;
 };
 
-/// Time and positions of the obstacle velocities to which the conditions of a stage refer.
+/// Instant or interval, and positions, of the obstacle velocities to which the conditions of a stage refer.
 struct ObstacleInstant {
-  double time = 0.0;
-  double span = 0.0;    ///< length of [time − span/2, time + span/2], over which they are averaged; 0: instantaneous
-  double factor = 0.0;  ///< contact points move by factor · δ from the displacement of the evaluation
+  double time = 0.0;    ///< absolute: the middle of the interval
+  double span = 0.0;    ///< length of the interval over which velocities are averaged, as a time; 0: instantaneous
+  double factor = 0.0;  ///< contact points are at factor · δ from the displacement of the evaluation
 };
 
 /// Momentum equation of a stage, per dof of the problem.
 struct RightHandSide {
-  Vector force;       ///< b
+  Vector force;       ///< b, acting on the body
   Vector prescribed;  ///< δ on supported dofs, in the order of Supports::dofs()
 };
 
 /// A motion of contact points as a function of δ: offset + factor · (rows δ).
 struct AffineMotion {
-  Vector offset;        ///< q, or p: (d−1) per contact point; no slip if empty
-  Vector rounding;      ///< rounding error of the offset, per contact point
-  double factor = 1.0;  ///< s, or σ
+  Vector offset;        ///< q, one per contact point; or p, (d−1) per contact point
+  Vector rounding;      ///< rounding error of all components of the offset, one per contact point
+  double factor = 1.0;  ///< s, without unit if y is a gap, 1/time if it is a rate; or σ, 1/time
 };
 
 /// Conditions on the contact points with given rows.
 struct ContactConditions {
-  std::vector<char> eligible;      ///< per contact point: 0 if it carries no force in this stage
-  AffineMotion gap;                ///< y: from −(rounding + the solver's own error) on it counts as y ≥ 0
+  std::vector<char> eligible;      ///< flag per contact point: 0 if it carries no force in this stage, else 1
+  AffineMotion gap;                ///< y; y ≥ −(rounding + the solver's own error) counts as y ≥ 0
   AffineMotion slip;               ///< w; empty if the stage has no friction
-  std::vector<char> frictionless;  ///< per contact point: 1 if this stage omits its friction; empty: none
+  std::vector<char> frictionless;  ///< flag per contact point: 1 if this stage omits its friction; empty: all 0
 };
 
-/// Start of the step, per contact point, from which a mean of the reactions is computed; empty for ReactionMean::end.
+/// State of the contact points at the start of a step over which a mean of the reactions is computed: one gap, one
+/// normal and (d−1) tangential reactions per point. Empty for ActingReaction::end.
 struct MeanStart {
   Vector gap, normal_reaction, tangential_reaction;
 };
 
 /// A stage with rows and forces that do not depend on δ: what the solver of an operator is given. A wrapper passes on
-/// the parts that it leaves as they are.
+/// the parts that it leaves as they are. Refers to the parts, which must outlive it.
 struct LinearStage {
   const ContactRows& rows;  ///< G and B_T
   const RightHandSide& right_hand_side;
@@ -107,22 +110,36 @@ struct ContactMotion {
   Vector start;  ///< displacement at the start of the step if the rows are those of a step; else empty
   double start_time = 0.0;
   /// Whether the obstacle velocities depend on δ. They are then evaluated at obstacle_displacement +
-  /// instant.factor δ, see evaluate_obstacle_velocity().
+  /// obstacle_instant.factor δ (evaluate_obstacle_velocity).
   bool reevaluates_obstacles = false;
   Vector obstacle_displacement;
-  ObstacleInstant instant;
-  Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ
-  ObstacleMotion obstacle;                           ///< work space
+  ObstacleInstant obstacle_instant;
+
+  /// Work space of the functions of contact_conditions.hpp.
+  struct Work {
+    Vector displacement, gap_change, gap_change_rounding;
+    ObstacleMotion obstacle;
+  } work = {};
+
+  /// Moves the origin of δ, from that of `origin`, by an increment of a stage with these conditions.
+  void move_origin(const ContactMotion& origin, const ContactConditions& conditions, const Vector& increment) {
+    displacement = origin.displacement + conditions.gap.factor * increment;
+    if (conditions.slip.offset.size() > 0) velocity = origin.velocity + conditions.slip.factor * increment;
+    if (reevaluates_obstacles)
+      obstacle_displacement = origin.obstacle_displacement + obstacle_instant.factor * increment;
+  }
 };
 
 /// Linearization of a nonlinear internal force f at a displacement p.
 struct ForceLinearization {
   /// p: b contains −f(p), and A δ stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty if A δ is linear.
-  Vector base;
-  /// Loads that follow the surface: b contains them at p, and the solver re-evaluates them at p + κδ.
-  FollowerPressure::Instant pressure;
+  Vector displacement;
+  /// Time and scale factor of the loads that follow the surface: b contains them at p, and the solver re-evaluates them
+  /// at p + κδ.
+  double load_time = 0.0, load_part = 1.0;
 };
 
+/// Contact problem of a step, as a scheme states it.
 struct Stage {
   std::shared_ptr<const ContactRows> rows;  ///< G and B_T
   RightHandSide right_hand_side;
@@ -134,32 +151,48 @@ struct Stage {
   std::optional<ContactMotion> motion;
   /// Obstacle velocities: the conditions are relative to them, and the reactions do work on them.
   ObstacleMotion obstacle;
+  /// Whether these are known: evaluate_obstacle_velocity() sets it, and require_friction() clears it again.
+  bool has_obstacle_velocity = false;
   std::vector<std::shared_ptr<ContactRows>> row_storage;  ///< storage for rows that follow the motion
 
   /// The stage with its present rows and right-hand side.
   [[nodiscard]] LinearStage linear() const { return {*rows, right_hand_side, conditions, start}; }
 };
 
-struct StageSolution {
+/// Reactions of a step. With several ranks, those of the local points and supports.
+struct Reactions {
+  Vector normal_reaction;      ///< r_N, one per contact point; zero if not eligible
+  Vector tangential_reaction;  ///< r_T, (d−1) per contact point; empty without friction
+  /// ρ̄, means that act on the body over a step at whose end the ones above hold; empty if they are equal.
+  Vector mean_normal_reaction, mean_tangential_reaction;
+  double end_weight = 1.0;  ///< μ, weight of the reactions at the end in that mean
+  Vector support_reaction;  ///< force of the support on the body, in the order of Supports::dofs()
+
+  /// Reactions that act on the body over the step.
+  [[nodiscard]] const Vector& acting_normal() const {
+    return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
+  }
+  [[nodiscard]] const Vector& acting_tangential() const {
+    return mean_tangential_reaction.size() > 0 ? mean_tangential_reaction : tangential_reaction;
+  }
+};
+
+/// Solution of a stage.
+struct StageSolution : Reactions {
   Vector increment;                           ///< δ
-  Vector normal_reaction;                     ///< r_N, per contact point; zero if not eligible
-  Vector tangential_reaction;                 ///< r_T, (d−1) per contact point; empty without friction
-  Vector support_reaction;                    ///< on supported dofs
   std::vector<ContactStatus> contact_status;  ///< per contact point
-  int iterations = 0;                         ///< of the contact solver, not of Newton's method
-  int newton_iterations = 1;                  ///< Newton iterations; 1 if the internal force is linear
+  int iterations = 0;                         ///< iterations of the contact solver
+  int newton_iterations = 1;                  ///< iterations of Newton's method; 1 if the internal force is linear
   Vector follower_load;                       ///< loads that follow the surface, at p + κδ; empty if there are none
   Vector contact_increment;                   ///< m on contact nodes, if the operator has an A_c; else empty
-  /// ρ̄; empty if it equals ρ.
-  Vector mean_normal_reaction, mean_tangential_reaction;
-  double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start.gap
-  double path_friction_work = 0.0;  ///< of tangential reactions along the path
-  double end_weight = 1.0;          ///< μ of this stage
+  /// Energies that reactions along the path of ActingReaction::path_mean bring to the body, negative if lost: normal
+  /// ones, −(those just after the start of the path) · MeanStart::gap; and tangential ones.
+  double path_contact_work = 0.0, path_friction_work = 0.0;
 
-  /// Sets all reactions to zero at `points` contact points; `tangents`: d − 1 per point with friction, 0 without.
-  void open_all(Index points, Index tangents) {
+  /// Sets all reactions to zero at `points` contact points, with d − 1 tangents per point, or 0 without friction.
+  void open_all(Index points, Index tangents_per_point) {
     normal_reaction.setZero(points);
-    tangential_reaction.setZero(points * tangents);
+    tangential_reaction.setZero(points * tangents_per_point);
     contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
     clear_mean();
     iterations = 0;
@@ -170,13 +203,6 @@ struct StageSolution {
     mean_tangential_reaction.resize(0);
     path_contact_work = path_friction_work = 0.0;
     end_weight = 1.0;
-  }
-  /// Reactions that act on the body over the stage.
-  [[nodiscard]] const Vector& acting_normal() const {
-    return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
-  }
-  [[nodiscard]] const Vector& acting_tangential() const {
-    return mean_tangential_reaction.size() > 0 ? mean_tangential_reaction : tangential_reaction;
   }
   /// Motion for which the contact conditions hold: m, or δ.
   [[nodiscard]] const Vector& contact_motion() const {

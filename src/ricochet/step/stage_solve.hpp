@@ -2,11 +2,12 @@
 
 #include "ricochet/step/stage.hpp"
 
-/// @file Interface through which a scheme has the stages of its step solved.
+/// @file Interface by which a scheme solves the stages of its step.
 namespace ricochet {
 
-/// Passed to Scheme::advance by the caller that runs the scheme. Stages are numbered as the scheme's operators. A stage
-/// may depend on the solutions of earlier ones, and may be solved again in the same step.
+/// Passed to Scheme::advance by the caller that runs the scheme. Stages are numbered as the scheme's operators; another
+/// number is a std::out_of_range. A stage may depend on the solutions of earlier ones, and may be solved again in the
+/// same step.
 class StageSolve {
  public:
   virtual ~StageSolve() = default;
@@ -16,11 +17,13 @@ class StageSolve {
   /// is none, or if it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
 
-  // For a nonlinear internal force:
+  // For a nonlinear internal force, with displacements per dof:
   /// Rotates the operators with the bodies at this displacement.
-  virtual void follow(const Vector& displacement) = 0;
-  /// Renews the operators with the tangent at this displacement, those of contact nodes alone at the other.
-  virtual void renew(const Vector& displacement, const Vector& of_contact_nodes) = 0;
+  virtual void rotate_operators(const Vector& displacement) = 0;
+  /// Refactorizes the operators with the tangent at `displacement`, those of contact nodes alone with the tangent at
+  /// `of_contact_nodes`. If some operator is not positive definite there, all are made without the stiffness of loads
+  /// that follow the surface, or at half of both displacements, or finally for the undeformed body.
+  virtual void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) = 0;
 };
 
 }  // namespace ricochet

@@ -1,44 +1,47 @@
 #pragma once
 
-/// @file Thresholds of the iterations of a step. They were chosen on thousands of random cases: another value changes
-/// results in their last digits, and how many iterations, cut steps and failures there are.
+/// @file Thresholds of the two iterations that schemes and solvers share; those of one scheme are beside it. They were
+/// chosen on thousands of random cases: another value changes results in their last digits, and how many iterations,
+/// cut steps and failures there are.
 namespace ricochet {
 
 /// Thresholds of Newton iterations with a factorization that is reused (newton_progress.hpp).
 struct NewtonThresholds {
   double tolerance = 1e-13;       ///< of the remaining error, relative to the increment
-  double loose_tolerance = 1e-9;  ///< the same if rounding keeps the corrections from decreasing further
-  double most_rounding = 100.0;   ///< relative to that of the positions, in the same situation
-  double stalled = 0.7;           ///< rate above which rounding may be the reason
-  double slow_rate = 0.5;
-  int patience = 3;          ///< slow iterations before a new factorization
-  int long_patience = 15;    ///< the same if earlier ones did not help
-  double divergence = 1e3;   ///< largest correction, relative to the least one
-  int most_growing = 2;      ///< growing corrections in a row before the iterations are accelerated
-  int max_iterations = 60;   ///< with one factorization
-  int helpful_renewals = 3;  ///< factorizations that slow iterations may request
-  int most_renewals = 6;     ///< factorizations before a solution is given up
+  double loose_tolerance = 1e-9;  ///< of it if rounding keeps the corrections from decreasing further
+  double max_rounding = 100.0;    ///< correction in that situation, relative to the rounding of the positions
+  double stalled_rate = 0.7;      ///< rate from which on rounding may be the reason
+  double slow_rate = 0.5;         ///< rate above which an iteration is slow
+  int max_slow = 3;               ///< slow iterations before a new factorization
+  int max_slow_accelerated = 15;  ///< slow iterations before one if the iterations are accelerated
+  double divergence = 1e3;        ///< largest correction, relative to the least one
+  int max_growing = 2;            ///< growing corrections in a row before the iterations are accelerated
+  int max_iterations = 60;        ///< iterations with one factorization
+  int helpful_renewals = 3;       ///< factorizations that slow iterations may request
+  int max_renewals = 6;           ///< factorizations before a solution is given up
 };
 
-/// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp). Progress is
-/// an error below nine tenths of the best one.
+/// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp).
 struct ContactThresholds {
   int plain_iterations = 6;  ///< iterations that settle by themselves take fewer
   int max_iterations = 400;
+  double progress = 0.9;  ///< error, relative to the best one, below which an iteration makes progress
   /// Iterations without progress after which the acceleration is restarted, since points that touch and separate change
-  /// the map; after which pairs of facets are frozen; and after which the step fails.
-  int patience_of_acceleration = 20, patience_of_pairs = 25, patience_of_iterations = 60;
-  /// After so many iterations, of which the last ones brought no progress, the error may be this multiple of the
+  /// the map.
+  int max_stalled_acceleration = 20;
+  int max_stalled_pairs = 25;       ///< iterations without progress after which pairs of facets are frozen
+  int max_stalled_iterations = 60;  ///< iterations without progress after which the step fails
+  /// Iterations, of which the last ones brought no progress, after which the error may be max_rounding times the
   /// rounding of the gaps: forces that rotate with large surfaces keep it.
-  int patient_iterations = 40, patience_of_rounding = 5;
-  double remaining_rounding = 100.0;
-  /// Multiple that is accepted before a step fails: gaps have the rounding of everything that moves the points, and in
-  /// narrow corners more than once.
+  int rounding_iterations = 40, max_stalled_rounding = 5;
+  double max_rounding = 100.0;
+  /// Iterations after which the error may be max_last_rounding times the rounding of the gaps, before a step fails:
+  /// gaps have the rounding of everything that moves the points, and in narrow corners more than once.
   int last_iterations = 60;
-  double max_remaining_rounding = 1e4;
+  double max_last_rounding = 1e4;
 };
 
 /// Number of times that a correction which inverts a cell is halved.
-inline constexpr int most_halvings = 5;
+inline constexpr int max_halvings = 5;
 
 }  // namespace ricochet

@@ -89,11 +89,7 @@ TEST(RotatingPairs, RowsOfAStepMeetBothEnds) {
     const Vector first = some_motion(problem, 3, 0.02), second = some_motion(problem, 4, 0.04);
     const StepStart start{first, 0.0};
     const ContactRows rows = rows_of(problem, second, &start);
-    Vector change;
-    rows.normal_motion(second - first, change);
-    EXPECT_LT((gaps(problem, second) - gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
-        << name_of(stack);
-    EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
+    expect_change_of_gaps(problem, rows, first, second, name_of(stack));
   }
 }
 
@@ -102,16 +98,8 @@ TEST(RotatingPairs, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
     const CaseRun run = stack_of(stack);
     const SemidiscreteProblem& problem = run.problem();
     const Vector at = some_motion(problem, 5, 0.03);
-    const Vector gap = gaps(problem, at);
-    const ContactRows rows = rows_of(problem, at, nullptr);
-    for (Index i = 0; i < rows.size(); ++i) {
-      const RowBalance left = balance_of_row(problem, rows, i, at);
-      EXPECT_LT(left.force, 1e-14) << name_of(stack);
-      EXPECT_LT(left.moment, 1e-14) << name_of(stack);
-    }
-    const Vector displacement = moved_rigidly(problem, at);
-    EXPECT_LT((gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(stack);
-    EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
+    expect_balance(problem, rows_of(problem, at, nullptr), at, 1e-14, name_of(stack));
+    expect_invariant_gaps(problem, at, name_of(stack));
   }
 }
 

@@ -109,16 +109,8 @@ TEST(SlidingContact, RowsOfAStepMeetBothEnds) {
     const Vector first = some_slide(problem, 3, 0.01, 0.1), second = some_slide(problem, 4, 0.01, 0.3);
     const StepStart start{first, 0.0};
     const ContactRows rows = sled_rows(problem, second, &start);
-    Vector change;
-    rows.normal_motion(second - first, change);
-    EXPECT_LT((gaps(problem, second) - gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
-        << name_of(sled);
-    EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
-    for (Index i = 0; i < rows.size(); ++i) {
-      const RowBalance left = balance_of_row(problem, rows, i, 0.5 * (first + second));
-      EXPECT_LT(left.force, 1e-13) << name_of(sled);
-      EXPECT_LT(left.moment, 1e-13) << name_of(sled);
-    }
+    expect_change_of_gaps(problem, rows, first, second, name_of(sled));
+    expect_balance(problem, rows, 0.5 * (first + second), 1e-13, name_of(sled));
   }
 }
 
@@ -127,16 +119,8 @@ TEST(SlidingContact, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
     const CaseRun run = sled_of(sled);
     const SemidiscreteProblem& problem = run.problem();
     const Vector at = some_slide(problem, 5, 0.01, 0.0);
-    const Vector gap = gaps(problem, at);
-    const ContactRows rows = sled_rows(problem, at, nullptr);
-    for (Index i = 0; i < rows.size(); ++i) {
-      const RowBalance left = balance_of_row(problem, rows, i, at);
-      EXPECT_LT(left.force, 1e-13) << name_of(sled);
-      EXPECT_LT(left.moment, 1e-13) << name_of(sled);
-    }
-    const Vector displacement = moved_rigidly(problem, at);
-    EXPECT_LT((gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(sled);
-    EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
+    expect_balance(problem, sled_rows(problem, at, nullptr), at, 1e-13, name_of(sled));
+    expect_invariant_gaps(problem, at, name_of(sled));
   }
 }
 

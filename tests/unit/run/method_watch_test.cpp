@@ -29,7 +29,7 @@ TEST(MethodWatch, TellsLossAndCreationAndWhatIsLeftOfThem) {
 }
 
 TEST(MethodWatch, TellsTheWeightsThatActed) {
-  MethodWatch watch(ReactionMean::mixed);
+  MethodWatch watch(ActingReaction::mixed_mean);
   EXPECT_EQ(watch.reactions()->mean_steps, 0);
   enter(watch, 0.0, 0.25);
   enter(watch, 0.0, 0.5, 0.0);  // no pressure
@@ -41,14 +41,14 @@ TEST(MethodWatch, TellsTheWeightsThatActed) {
   EXPECT_EQ(acting.largest_weight, 0.25);
   EXPECT_EQ(acting.mean_steps, 2);
   EXPECT_EQ(acting.end_steps, 1);
-  MethodWatch of_end(ReactionMean::end);
+  MethodWatch of_end(ActingReaction::end);
   enter(of_end, 0.0, 0.25);
   EXPECT_EQ(of_end.reactions()->kind, "end");
   EXPECT_EQ(of_end.reactions()->mean_steps, 0);
 }
 
 TEST(MethodWatch, GoesOnFromASnapshot) {
-  MethodWatch watch(ReactionMean::mixed), resumed(ReactionMean::mixed);
+  MethodWatch watch(ActingReaction::mixed_mean), resumed(ActingReaction::mixed_mean);
   enter(watch, -1.0, 0.25);
   Snapshot snapshot;
   watch.persist(snapshot.saver("method"));

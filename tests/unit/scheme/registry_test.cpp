@@ -81,8 +81,8 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
   struct NoStages final : StageSolve {
     Stage& stage(std::size_t) override { throw std::logic_error("it has no stage"); }
     const StageSolution& solve(std::size_t) override { throw std::logic_error("it has no stage"); }
-    void follow(const Vector&) override {}
-    void renew(const Vector&, const Vector&) override {}
+    void rotate_operators(const Vector&) override {}
+    void renew_operators(const Vector&, const Vector&) override {}
   } stages;
   State state;
   state.displacement = Vector::Zero(2);
@@ -91,6 +91,17 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
   scheme->advance(SemidiscreteProblem(), state, stages, increment);
   EXPECT_NEAR(state.velocity[0], 1.0, 1e-15);
   EXPECT_NEAR(state.displacement[1], 0.1, 1e-15);
+}
+
+TEST(Scheme, HasActingForcesAtTheInstantOfThoseShownUnlessItSaysOtherwise) {
+  struct Still final : Scheme {
+    using Scheme::Scheme;
+    [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override { return {}; }
+    void advance(const SemidiscreteProblem&, State&, StageSolve&, Vector&) override {}
+  };
+  EXPECT_EQ(Still(0.1).acting_instant(), 0.0);
+  EXPECT_EQ(Still(0.1, {.force_instant = -0.5}).acting_instant(), -0.5);
+  EXPECT_EQ(Still(0.1, {.force_instant = -0.25, .acting_instant = 0.0}).acting_instant(), 0.0);
 }
 
 TEST_F(OutsideScheme, HasItsDefaultAndItsRange) {

@@ -19,11 +19,6 @@
 namespace ricochet::test_support {
 namespace {
 
-unsigned samples(unsigned count) {
-  const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
-  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : seeds(count);
-}
-
 struct Pairing {
   const char *scheme, *mass;
   bool ends_outside;  ///< the gap condition holds at the end of the step

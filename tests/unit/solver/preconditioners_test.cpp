@@ -62,14 +62,14 @@ TEST_F(OutsidePreconditioner, IsInTheSchema) {
 
 TEST(Preconditioners, AreMadeInOneWay) {
   EXPECT_TRUE(preconditioner_registry().all().front().type.is_block_diagonal);
-  int for_long_steps = 0;
+  int fallbacks = 0;
   for (const Registration<PreconditionerType>& entry : preconditioner_registry().all()) {
     const PreconditionerType& type = entry.type;
     EXPECT_EQ(int{type.is_block_diagonal} + int{type.make != nullptr} + int{!type.petsc_options.empty()}, 1)
         << entry.name;
-    for_long_steps += int{type.suits_long_steps};
+    fallbacks += int{type.is_fallback};
   }
-  EXPECT_EQ(for_long_steps, 1);
+  EXPECT_EQ(fallbacks, 1);
 }
 
 TEST(Preconditioners, OfPetscAreRefusedWithoutIt) {
@@ -86,6 +86,11 @@ TEST(Preconditioners, OfPetscAreRefusedWithoutIt) {
           << problem.what();
     }
   }
+}
+
+TEST(Preconditioners, OfPetscAreRefusedByTheFactoryToo) {
+  EXPECT_THROW(static_cast<void>(make_named_preconditioner(fallback_preconditioner(), {}, {}, {}, one_rank(), nullptr)),
+               Error);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(ContactBoundary, LeavesOutMultipliersThatSupportsHoldAlongTheNormal) {
         for (const Index node : nodes) {
           if (is_held(node)) trace.col(node).setZero();
         }
-        if (!is_stable(multipliers, facet_shape(shape, 0), degree)) continue;
+        if (!instability(multipliers, facet_shape(shape, 0), degree).empty()) continue;
         EXPECT_EQ((trace * trace.transpose()).llt().info(), Eigen::Success);
         EXPECT_GT((trace * trace.transpose()).ldlt().vectorD().minCoeff(), 1e-4);
       }
@@ -141,7 +141,7 @@ TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
       const int d = test->mesh.dimension;
       const auto obstacle = plane(d == 2 ? Vector(Eigen::Vector2d(0.6, 0.8)) : Vector(Eigen::Vector3d(0.3, -0.4, 1.2)));
       for (const std::string& multipliers : multiplier_space_names()) {
-        if (!is_stable(multipliers, facet_shape(shape, 0), degree)) continue;
+        if (!instability(multipliers, facet_shape(shape, 0), degree).empty()) continue;
         for (int mask = 0; mask < (1 << d); ++mask) {
           SCOPED_TRACE(name(shape) + std::to_string(degree) + multipliers + " held " + std::to_string(mask));
           std::vector<int> held;

@@ -31,10 +31,6 @@ std::string instability(const std::string& multipliers, CellShape facet, int dis
   return space.instability ? space.instability(facet, displacement_degree) : std::string();
 }
 
-bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree) {
-  return instability(multipliers, facet, displacement_degree).empty();
-}
-
 bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch) {
   if (!patch.is_supported) return false;
   if (multiplier.node >= 0) return patch.is_supported(multiplier.node);

@@ -94,12 +94,10 @@ using MultiplierSpaceRegistration = Registration<MultiplierSpaceType>;
 /// Anchor of the multipliers of a space; throws like make_multiplier_space.
 [[nodiscard]] MultiplierAnchor anchor_of(const std::string& multipliers);
 
-/// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape,
-/// according to the numerical test inf_sup_test.cpp on families of meshes (docs/multipliers.md). Without
-/// stability, pressures that oscillate from facet to facet are not controlled, and there may be too many
-/// conditions for the available displacements.
-[[nodiscard]] bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree);
-/// Reason of the instability, and an alternative, as a sentence without its full stop; empty if stable.
+/// Reason why a space is not uniformly inf–sup stable with displacements of a degree on facets of a shape, and an
+/// alternative, as a sentence without its full stop; empty if it is stable, according to the numerical test
+/// inf_sup_test.cpp on families of meshes (docs/multipliers.md). Without stability, pressures that oscillate from facet
+/// to facet are not controlled, and there may be too many conditions for the available displacements.
 [[nodiscard]] std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree);
 
 /// Whether supports constrain a multiplier's node or, if it is anchored at a facet, all its nodes: it is then omitted.

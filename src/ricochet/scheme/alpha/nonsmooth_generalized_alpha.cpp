@@ -55,7 +55,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     const StageSolution& impact = contact_problems_.solve_velocities(problem, state, h, weights_, stages);
     // Λ/h does work on this increment.
     increment = (0.5 * h) * (state.velocity + contact_problems_.predicted_velocity + impact.increment);
-    compute_corrections(problem, state.time, impact, increment, state.memory[smooth_varying_load]);
+    compute_corrections(problem, state.time, impact, increment, state.memory.at(smooth_varying_load));
     store_forces(problem, stages, impact, state);
     state.displacement += contact_problems_.displacement_increment;
     state.velocity = contact_problems_.predicted_velocity + impact.increment;
@@ -73,7 +73,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   NonsmoothGeneralizedAlpha(double step, const AlphaWeights& weights, double restitution)
       : Scheme(step, {.acting_instant = -0.5,
                       .supports_step_changes = true,
-                      .jump_response = weights.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates}),
+                      .jump_response = weights.gamma > 0.5 ? JumpResponse::damped : JumpResponse::undamped}),
         weights_(weights),
         contact_problems_(restitution) {}
 
@@ -86,12 +86,6 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     const double h = step(), instant_offset = 0.5 - weights_.force_weight;  // ½−α_f, of F̄ from the middle of the step
     excess_displacement_ = solved.displacement_increment - increment;
     corrections_ = {.support_work = problem.supports.work(solved.mean_support_reaction, excess_displacement_)};
-    // Checkpoints written before commit 31378ead do not contain this load. It is the one at `time` unless a program set
-    // another load between the two steps.
-    if (load_of_acceleration.size() == 0) {
-      load_of_acceleration = Vector::Zero(problem.dof_count());
-      if (problem.loads.varies()) problem.loads.varying(time, load_of_acceleration);
-    }
     if (problem.loads.varies()) {
       problem.loads.varying(time + h, end_load_);
       weighted_load_ = weights_.force_weight * load_of_acceleration + (1.0 - weights_.force_weight) * end_load_;

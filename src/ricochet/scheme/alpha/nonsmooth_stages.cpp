@@ -65,8 +65,8 @@ const StageSolution& NonsmoothStages::solve_velocities(const SemidiscreteProblem
   base_ = state.displacement + displacement_increment;
   Stage& stage = unloaded_stage(problem, velocity_stage, stages);
   evaluate_obstacle_velocity(problem, base_, {end}, stage);
-  equations_.require_impact_law(problem, base_, end, predicted_velocity, state.velocity, restitution_, step, stage);
-  stage.conditions.gap.factor = 1.0;
+  equations_.require_impact_law(problem, base_, end, predicted_velocity, state.velocity, 1.0, restitution_, step,
+                                stage);
   for (Index i = 0; i < position_multiplier_.size(); ++i) {
     if (position_multiplier_[i] > 0.0) stage.conditions.eligible[static_cast<std::size_t>(i)] = 1;
   }

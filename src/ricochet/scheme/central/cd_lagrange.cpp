@@ -19,9 +19,8 @@ class CdLagrange final : public CentralScheme {
  private:
   void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
     const double h = step();
-    equations().require_impact_law(problem, instant.now, instant.time, instant.velocity, instant.velocity, restitution_,
-                                   h, stage);
-    stage.conditions.gap.factor = 1.0 / h;
+    equations().require_impact_law(problem, instant.now, instant.time, instant.velocity, instant.velocity, 1.0 / h,
+                                   restitution_, h, stage);
     equations().require_friction_beside_rates(problem, instant.velocity, 1.0 / h, stage);
   }
 

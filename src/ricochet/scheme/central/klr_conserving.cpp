@@ -19,8 +19,7 @@ class KlrConserving final : public CentralScheme {
  private:
   void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
     const double h = step();
-    require_no_approach(problem, instant.now, instant.time, instant.velocity, stage.obstacle, h, stage);
-    stage.conditions.gap.factor = 0.5 / h;
+    require_no_approach(problem, instant.now, instant.time, instant.velocity, 0.5 / h, stage.obstacle, h, stage);
     equations().require_friction_beside_rates(problem, instant.velocity, 0.5 / h, stage);
   }
 };

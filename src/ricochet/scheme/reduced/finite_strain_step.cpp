@@ -12,16 +12,6 @@ namespace ricochet {
 
 namespace {
 
-/// Admissible energy defect of a step: relative to kinetic and elastic energy for acceptance, relative to the elastic
-/// energies for the choice of σ.
-constexpr double energy_tolerance = 1e-15;
-/// Likewise if σ hardly changes the work (EnergySecant::is_weak): another σ improves nothing but rounding there.
-constexpr double weak_energy_tolerance = 1e-14;
-/// The admissible defect of a substep is that of the full step times its fraction of it, which counts as at least this.
-constexpr double least_part = 0.1;
-/// Corrections, relative to the increment, from which on σ is sought: before, displacements are too inaccurate.
-constexpr double near_solution = 1e-2;
-
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
   double sum = 0.0;
   for (const Index dof : problem.contact_dofs) sum += a[dof] * b[dof];
@@ -47,12 +37,12 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
 }
 
 std::vector<OperatorCoefficients> FiniteStrainStep::operators(const SemidiscreteProblem& problem, double step,
-                                                              ReactionMean mean) {
+                                                              ActingReaction acting) {
   OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
   midpoint.relaxation_step = step;
   if (!problem.has_contact_dofs()) return {midpoint};
   midpoint.condensed_operator = static_cast<int>(MasslessContactStep::condensed_stage);
-  midpoint.mean = mean;
+  midpoint.acting = acting;
   OperatorCoefficients contact_operator{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
   contact_operator.relaxation_step = step;
   return {contact_operator, midpoint};
@@ -69,7 +59,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   kinetic_ = kinetic_start_ = 0.5 * problem.mass.quadratic_form(state.velocity);
   converged_ = corrects_velocity_ = false;
   energy_defect_size_ = std::numeric_limits<double>::infinity();
-  part_ = std::clamp(step / whole_step_, least_part, 1.0);
+  part_ = std::clamp(step / whole_step_, thresholds_.min_part, 1.0);
   stalled_iterations_ = 0;
   energy_defect_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   has_reactions_ = false;
@@ -84,7 +74,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
 }
 
 double FiniteStrainStep::tolerance() const {
-  return sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance;
+  return sigma_.is_weak() ? thresholds_.weak_tolerance : thresholds_.tolerance;
 }
 
 /// Computes f̄, p, f(u₁), and σ from the balance of energy at these.
@@ -121,8 +111,9 @@ void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step,
   energy_defect_ = required - has - sigma_.value() * unit;
   const double size = std::abs(energy_start_ + energy_);
   // A defect at the level of rounding carries no information, least of all if the body hardly moves.
-  if (std::abs(energy_defect_) <= tolerance() * size || unit <= energy_tolerance * energy_tolerance * size) return;
-  if (sigma_.choose((required - has) / unit, energy_defect_, near_rounding * size, converged_))
+  if (std::abs(energy_defect_) <= tolerance() * size || unit <= thresholds_.tolerance * thresholds_.tolerance * size)
+    return;
+  if (sigma_.choose((required - has) / unit, energy_defect_, thresholds_.near_rounding * size, converged_))
     progress_.restart();  // the next correction is due to σ
 }
 
@@ -154,7 +145,7 @@ void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, 
 
 /// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b
 /// and L₁ contain the force of lagged rows.
-void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step,
                                        const State& state, StageSolve& stages, Stage& stage) {
   contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side.force + lagged_row_force_;
   if (loads_.acts_at_ends()) contact_residual_ += loads_.beside_at_end();
@@ -162,7 +153,7 @@ void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, React
   const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
   lagged_.release();
-  contact_.require(problem, mean, step, state, end_, equations_, stage);
+  contact_.require(problem, acting, step, state, end_, equations_, stage);
   if (!problem.contact.follows_motion()) return;
   // Conditions are linear about the end of the previous iteration: −m there, in place of δ = 0.
   linearization_motion_.setZero(end_.size());
@@ -304,7 +295,7 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
 }
 
 /// Solves the linear stage of an iteration.
-const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem& problem, ReactionMean mean,
+const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem& problem, ActingReaction acting,
                                                        double step, const State& state, StageSolve& stages) {
   const std::size_t number = MasslessContactStep::midpoint_stage(problem);
   Stage& stage = stages.stage(number);
@@ -315,7 +306,7 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
     stage.conditions.eligible.clear();
     stage.motion.reset();
   } else {
-    require_contact(problem, mean, step, state, stages, stage);
+    require_contact(problem, acting, step, state, stages, stage);
   }
   const StageSolution* solution = nullptr;
   try {
@@ -328,24 +319,24 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
   return *solution;
 }
 
-void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,
+void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
                                StageSolve& stages, Vector& increment) {
   start(problem, step, state);
-  stages.follow(middle_);
+  stages.rotate_operators(middle_);
   evaluate(problem, step, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
   Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
   while (true) {
-    const StageSolution& solution = solve_iteration(problem, mean, step, state, stages);
+    const StageSolution& solution = solve_iteration(problem, acting, step, state, stages);
     const Iteration iteration = correct(problem, state, solution);
-    const NewtonProgress::Advice advice = progress_.judge(iteration.correction, iteration.increment);
+    const NewtonProgress::Advice advice = progress_.assess(iteration.correction, iteration.increment);
     // Once displacements have converged, which lasts while σ is sought, the solution is that of the equations.
-    if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on)
+    if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::proceed)
       accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
     if (problem.has_contact_dofs()) update_start(problem, step, state, stages, stage, solution);
-    const bool near = iteration.correction <= near_solution * iteration.increment || converged_;
+    const bool near = iteration.correction <= thresholds_.near_solution * iteration.increment || converged_;
     evaluate_with_halving(problem, step, state, near);
     try {
       if (is_balanced(step, state, iteration, near)) {

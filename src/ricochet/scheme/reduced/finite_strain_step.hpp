@@ -59,14 +59,30 @@
 /// is due to O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467.)
 namespace ricochet {
 
+/// Thresholds of the balance of energy; defects are relative to kinetic and elastic energy.
+struct EnergyThresholds {
+  double tolerance = 1e-15;         ///< admissible defect; for the choice of σ relative to the elastic energies
+  double weak_tolerance = 1e-14;    ///< if σ hardly changes the work: another σ improves nothing but rounding there
+  double near_rounding = 1e-12;     ///< below which rounding hides how a defect depends on σ
+  double slow_convergence = 1e-13;  ///< above which iterations end after two that do not halve it, below after one
+  double near_solution = 1e-2;  ///< correction relative to the increment, up to which displacements suffice to find σ
+  double max_defect = 1e-8;     ///< of a full step that no σ balances; of a substep times its part of the full step,
+  double min_part = 0.1;        ///< which counts as at least this
+  double max_corrected = 1e-6;  ///< up to which velocities compensate a defect
+  double max_snapped = 1e-4;    ///< likewise in a substep below short_part, where contact nodes snap to another
+  double short_part = 1.0 / 64.0;  ///< equilibrium: shorter ones would have the same defect
+  double max_created = 1e-11;      ///< energy that the end reactions may create
+  int max_pair_iterations = 80;    ///< iterations after which pairs of facets that keep changing are frozen
+};
+
 class FiniteStrainStep {
  public:
   /// Analyses the problem, once its mass and supports are known, for steps of this full length. Throws
   /// Error(invalid_input).
   void analyse(const SemidiscreteProblem& problem, double step);
   [[nodiscard]] static std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem, double step,
-                                                                   ReactionMean mean);
-  void advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state, StageSolve& stages,
+                                                                   ActingReaction acting);
+  void advance(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state, StageSolve& stages,
                Vector& increment);
   [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
   /// Middle x of the last step.
@@ -80,12 +96,10 @@ class FiniteStrainStep {
   struct Reactions {
     Vector normal, tangential, acting_normal, acting_tangential;
   };
-  /// Energy defect, relative to the energies, below which rounding hides its dependence on σ.
-  static constexpr double near_rounding = 1e-12;
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   /// Evaluates forces at the middle and at the end; near the solution also the energy defect, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
-  const StageSolution& solve_iteration(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+  const StageSolution& solve_iteration(const SemidiscreteProblem& problem, ActingReaction acting, double step,
                                        const State& state, StageSolve& stages);
   [[nodiscard]] bool is_balanced(double step, const State& state, const Iteration& iteration, bool near);
   [[nodiscard]] bool correct_velocity(double step, const State& state);
@@ -98,7 +112,7 @@ class FiniteStrainStep {
   void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Iteration& iteration,
                     StageSolve& stages);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
-  void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
+  void require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step, const State& state,
                        StageSolve& stages, Stage& stage);
   Iteration correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
   void accelerate(const SemidiscreteProblem& problem, const State& state);
@@ -110,6 +124,7 @@ class FiniteStrainStep {
   void throw_if_inverted(const SemidiscreteProblem& problem);
   void evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
+  EnergyThresholds thresholds_;
   std::unique_ptr<FlightPrediction> flight_;
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;

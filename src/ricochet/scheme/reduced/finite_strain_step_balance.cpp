@@ -14,17 +14,16 @@ namespace ricochet {
 /// permits. A step that creates or loses energy is not acceptable: throws Error(not_converged).
 bool FiniteStrainStep::is_balanced(double step, const State& state, const Iteration& iteration, bool near) {
   if (!near) return false;  // the defect is not known
-  constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
-  // Shorter substeps would have the same defect: contact nodes, which have no inertia, snap to another equilibrium, and
-  // the energy that this releases or absorbs is exchanged with the motion.
-  const bool is_short = step <= whole_step_ / 64.0;
+  // In a short one contact nodes, which have no inertia, snap to another equilibrium, and the energy that this releases
+  // or absorbs is exchanged with the motion.
+  const bool is_short = step <= thresholds_.short_part * whole_step_;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(energy_defect_) <= tolerance() * size;
   const bool is_stalled = std::abs(energy_defect_) > 0.5 * energy_defect_size_;
   stalled_iterations_ = converged_ && is_stalled ? stalled_iterations_ + 1 : 0;
   energy_defect_size_ = std::abs(energy_defect_);
   // Far from rounding one iteration may bring little, and the next one much.
-  const int max_stalled_iterations = energy_defect_size_ <= 1e-13 * size ? 1 : 2;
+  const int max_stalled_iterations = energy_defect_size_ <= thresholds_.slow_convergence * size ? 1 : 2;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : stalled_iterations_ >= max_stalled_iterations;
   if (log::enabled(log::Level::debug)) {
     log::debug(fmt::format(
@@ -36,22 +35,23 @@ bool FiniteStrainStep::is_balanced(double step, const State& state, const Iterat
   if (!converged_) return false;
   if (!is_exact && !is_last) return false;
   const bool is_done =
-      is_exact || energy_defect_size_ <= near_rounding * size ||
-      (energy_defect_size_ <= (is_short ? most_snapped : most_corrected) * size && correct_velocity(step, state));
-  if (end_weight_ * dissipation_ < -most_created * size) {
+      is_exact || energy_defect_size_ <= thresholds_.near_rounding * size ||
+      (energy_defect_size_ <= (is_short ? thresholds_.max_snapped : thresholds_.max_corrected) * size &&
+       correct_velocity(step, state));
+  if (end_weight_ * dissipation_ < -thresholds_.max_created * size) {
     throw Error(ErrorKind::not_converged,
                 fmt::format("contact nodes have more than one equilibrium position at the start of the step, and would "
                             "move to one of higher energy (by {:.2g} of the energy)",
                             -end_weight_ * dissipation_ / size));
   }
-  if (is_done && corrects_velocity_ && energy_defect_size_ > most_corrected * size && !snap_logged_) {
+  if (is_done && corrects_velocity_ && energy_defect_size_ > thresholds_.max_corrected * size && !snap_logged_) {
     snap_logged_ = true;
     log::info(
         fmt::format("step {}: contact nodes snap to another equilibrium position; velocities compensate for the {:.2g} "
                     "of the energy that this releases or absorbs (reported once)",
                     state.step + 1, energy_defect_size_ / size));
   }
-  if (is_done || energy_defect_size_ <= part_ * most * size) return true;
+  if (is_done || energy_defect_size_ <= part_ * thresholds_.max_defect * size) return true;
   throw Error(ErrorKind::not_converged,
               fmt::format("no force at the middle of the step does the work of the elastic energy: {:.2g} of the "
                           "energy is missing, as strains change too much in one step",

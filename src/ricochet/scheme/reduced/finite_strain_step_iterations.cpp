@@ -4,13 +4,6 @@
 /// @file Treatment of iterations of a step that make no progress.
 namespace ricochet {
 
-namespace {
-
-/// Iterations after which pairs of facets that keep changing are held.
-constexpr int patience_of_pairs = 80;
-
-}  // namespace
-
 /// Freezes pairs from now on, until the step is done. Returns false if there is nothing to freeze, or it is frozen
 /// already.
 bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
@@ -23,12 +16,13 @@ bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
 void FiniteStrainStep::apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice,
                                     const Iteration& iteration, StageSolve& stages) {
   // Pairs may change from iteration to iteration.
-  const bool is_stuck = advice == NewtonProgress::Advice::failed ||
-                        (advice == NewtonProgress::Advice::renew && progress_.iterations() > patience_of_pairs);
+  const bool is_stuck =
+      advice == NewtonProgress::Advice::failed ||
+      (advice == NewtonProgress::Advice::renew && progress_.iterations() > thresholds_.max_pair_iterations);
   if (is_stuck && freeze_pairs(problem)) return;
   if (advice == NewtonProgress::Advice::failed) throw progress_.failure(iteration.correction);
   if (advice != NewtonProgress::Advice::renew) return;
-  stages.renew(middle_, end_);
+  stages.renew_operators(middle_, end_);
   progress_.count_renewal();
   progress_.restart();
   acceleration_.restart();
@@ -48,7 +42,7 @@ void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem,
       evaluate(problem, step, state, near);
       return;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+      if (error.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
     }
     middle_ = 0.5 * (middle_ + last_middle_);
     end_ = 0.5 * (end_ + last_end_);

@@ -28,11 +28,7 @@ void MasslessContactStep::analyse(const SemidiscreteProblem& problem) {
                             "creates no energy with this mass",
                             scheme_));
   }
-  if (!problem.internal_force->is_linear()) {
-    finite_.emplace();
-    finite_->analyse(problem, step_);
-    return;
-  }
+  if (!problem.internal_force->is_linear()) return;
   stiffness_.analyse(problem);
   find_damping(problem);
 }
@@ -81,16 +77,15 @@ void MasslessContactStep::find_damping(const SemidiscreteProblem& problem) {
 }
 
 std::vector<OperatorCoefficients> MasslessContactStep::operators(const SemidiscreteProblem& problem,
-                                                                 ReactionMean mean) const {
+                                                                 ActingReaction acting) const {
   const double h = step_;
-  if (finite_) return FiniteStrainStep::operators(problem, h, mean);
   OperatorCoefficients midpoint{.mass = 4.0 / (h * h), .stiffness = 1.0, .damping = 2.0 / h};
   if (!problem.has_contact_dofs()) return {midpoint};
   const OperatorCoefficients contact_operator{
       .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
   midpoint.condensed_operator = static_cast<int>(condensed_stage);
   midpoint.condensed_weight = one_damping_ ? 1.0 / (1.0 + 2.0 * eta_ / h) : 1.0;
-  midpoint.mean = mean;
+  midpoint.acting = acting;
   return {contact_operator, midpoint};
 }
 
@@ -141,12 +136,8 @@ const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem
   return stages.solve(condensed_stage).increment;
 }
 
-void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state,
+void MasslessContactStep::advance(const SemidiscreteProblem& problem, ActingReaction acting, State& state,
                                   StageSolve& stages, Vector& increment) {
-  if (finite_) {
-    finite_->advance(problem, mean, step_, state, stages, increment);
-    return;
-  }
   const double h = step_;
   const bool has_contact_nodes = problem.has_contact_dofs();
   Stage& stage = stages.stage(midpoint_stage(problem));
@@ -159,7 +150,7 @@ void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMe
     const Vector& shift = solve_contact_nodes(problem, contact_right_hand_side_, stages);
     for (const Index dof : problem.contact_dofs) contact_base_[dof] -= weight * shift[dof];
   }
-  contact_.require(problem, mean, h, state, contact_base_, equations_, stage);
+  contact_.require(problem, acting, h, state, contact_base_, equations_, stage);
 
   const StageSolution& solution = solve(problem, state, stage, stages);
   increment = h * state.velocity + 2.0 * solution.increment;
@@ -169,7 +160,7 @@ void MasslessContactStep::advance(const SemidiscreteProblem& problem, ReactionMe
   move(problem, solution.increment, increment, state);
   store_forces(problem, stage, solution, increment, state);
   contact_.update_drift(problem, start_displacement_, state);
-  if (has_contact_nodes) correct(problem, mean, stage, solution, increment, state, stages);
+  if (has_contact_nodes) correct(problem, acting, stage, solution, increment, state, stages);
 }
 
 /// Repeats the solve while the gyroscopic force of rigid bodies changes: it depends on their rotation in the step.
@@ -258,11 +249,11 @@ double MasslessContactStep::load_work_of_mean(const SemidiscreteProblem& problem
   return mu * at_end - of_reactions + mu * (at_end - of_change);
 }
 
-void MasslessContactStep::correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage,
+void MasslessContactStep::correct(const SemidiscreteProblem& problem, ActingReaction acting, const Stage& stage,
                                   const StageSolution& solution, const Vector& increment, const State& state,
                                   StageSolve& stages) {
   const ContactNodeWork work = contact_node_work(problem, *stage.rows, solution, increment, stages);
-  if (mean == ReactionMean::end) {
+  if (acting == ActingReaction::end) {
     corrections_ = {.load_work = work.load,
                     .numerical_dissipation = 0.5 * static_increment_.dot(contact_stiffness_force_)};
     return;

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "ricochet/scheme/contact_stiffness.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
-#include "ricochet/scheme/reduced/finite_strain_step.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -27,7 +25,8 @@ class MasslessContactStep {
  public:
   MasslessContactStep(std::string scheme, double step) : scheme_(std::move(scheme)), step_(step) {}
 
-  /// Throws Error(invalid_input) if contact nodes have inertia.
+  /// Throws Error(invalid_input) if contact nodes have inertia. Computes nothing for a nonlinear internal force, whose
+  /// steps are those of finite_strain_step.hpp.
   void analyse(const SemidiscreteProblem& problem);
   /// Checks the requirements of schemes whose balance of energy holds without friction, against planes, and without
   /// stiffness damping at contact nodes. To be called after analyse(). Throws Error(invalid_input), which names the
@@ -37,20 +36,12 @@ class MasslessContactStep {
   [[nodiscard]] bool damps_contact_nodes() const { return damps_; }
   /// Operators of the contact nodes and of the midpoint; without contact dofs that of the midpoint alone.
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem,
-                                                            ReactionMean mean) const;
+                                                            ActingReaction acting) const;
 
   /// Performs a step that is determined by the contact conditions at its end, see above.
-  void advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
+  void advance(const SemidiscreteProblem& problem, ActingReaction acting, State& state, StageSolve& stages,
                Vector& increment);
-  /// Report on the last step: at finite strain its forces act at the middle x, with couples between bodies.
-  [[nodiscard]] LastStep last_step() const {
-    if (!finite_) return {.corrections = corrections_};
-    return {.corrections = finite_->corrections(),
-            .displacement_of_forces = &finite_->middle(),
-            .has_couples_between_bodies = true};
-  }
-
-  [[nodiscard]] bool has_finite_strain() const { return finite_.has_value(); }
+  [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
 
   // Parts of a step, for schemes that combine them in another way.
   /// Computes L̄ and base = u₀ + (h/2)v₀, and fills the stage with the balance at the middle.
@@ -93,8 +84,8 @@ class MasslessContactStep {
   void find_damping(const SemidiscreteProblem& problem);
   [[nodiscard]] double load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                          StageSolve& stages);
-  void correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage, const StageSolution& solution,
-               const Vector& increment, const State& state, StageSolve& stages);
+  void correct(const SemidiscreteProblem& problem, ActingReaction acting, const Stage& stage,
+               const StageSolution& solution, const Vector& increment, const State& state, StageSolve& stages);
 
   std::string scheme_;
   double step_;
@@ -104,7 +95,6 @@ class MasslessContactStep {
   EndContact contact_;
   StepEquations equations_;
   StepCorrections corrections_;
-  std::optional<FiniteStrainStep> finite_;  ///< for a nonlinear internal force
   Vector load_, base_, residual_, load_change_, contact_right_hand_side_, contact_base_;
   Vector previous_varying_, mean_varying_;             ///< varying load at the start; its mean over the step
   Vector start_displacement_, predicted_end_;          ///< u₀; u₁ of rigid bodies, predicted

@@ -20,14 +20,14 @@ class MeanReactionScheme final : public EndContactScheme {
   }
   [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
     ProblemTraits traits = EndContactScheme::traits_for(problem);
-    traits.long_steps.trouble =
+    traits.long_steps.consequence =
         "the contact forces at the ends of steps oscillate: those of a block at rest alternated between zero "
         "and four times its weight at ten crossings, without end (their means, which act, do not)";
     return traits;
   }
 
  private:
-  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem&) const override { return ReactionMean::path; }
+  [[nodiscard]] ActingReaction acting(const SemidiscreteProblem&) const override { return ActingReaction::path_mean; }
 };
 
 }  // namespace

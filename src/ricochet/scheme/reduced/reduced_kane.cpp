@@ -34,8 +34,8 @@ class ReducedKane final : public EndContactScheme {
 
   [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem& problem) const override {
     ProblemTraits traits = EndContactScheme::traits_for(problem);
-    if (traits.acting_reactions == ReactionMean::end && has_mean(problem))
-      traits.setting_that_loses_less = "time.reaction_weight = \"adaptive\"";
+    if (traits.acting_reactions == ActingReaction::end && has_mean(problem))
+      traits.less_dissipative_setting = "time.reaction_weight = \"adaptive\"";
     return traits;
   }
 
@@ -49,10 +49,10 @@ class ReducedKane final : public EndContactScheme {
     return !problem.contact.follows_motion() && !massless_step().damps_contact_nodes() &&
            !has_finite_strain_friction(problem);
   }
-  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
+  [[nodiscard]] ActingReaction acting(const SemidiscreteProblem& problem) const override {
     // Sliding without damping flutters, less so under the end reactions.
     const bool is_requested = weight_ == "adaptive" || (weight_ == "automatic" && !problem.contact.has_friction());
-    return is_requested && has_mean(problem) ? ReactionMean::mixed : ReactionMean::end;
+    return is_requested && has_mean(problem) ? ActingReaction::mixed_mean : ActingReaction::end;
   }
 
   std::string weight_;

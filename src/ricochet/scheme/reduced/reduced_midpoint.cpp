@@ -1,4 +1,4 @@
-#include "ricochet/scheme/reduced/massless_contact_step.hpp"
+#include "ricochet/scheme/reduced/end_contact_scheme.hpp"
 #include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
@@ -14,74 +14,58 @@ namespace {
 /// rule alone would have u_c1 = 2x_c − u_c0, with which contact nodes alternate from step to step.
 /// At finite strain the acting reactions are those of mean-reaction, and energy is conserved exactly
 /// (finite_strain_step.hpp).
-class ReducedMidpoint final : public Scheme {
+class ReducedMidpoint final : public EndContactScheme {
  public:
-  explicit ReducedMidpoint(double step)
-      : Scheme(step, {.acting_instant = -0.5,
-                      .supports_step_changes = true,
-                      .supports_nonlinear_force = true,
-                      .supports_relaxation = true,
-                      .conserves_moments_at_finite_strain = true,
-                      .suits_singular_mass = true,
-                      .jump_response = JumpResponse::alternates}),
-        massless_step_("reduced-midpoint", step) {}
+  explicit ReducedMidpoint(double step) : EndContactScheme("reduced-midpoint", step, false) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
-    massless_step_.analyse(problem);
-    massless_step_.require_frictionless_planes(problem);
+    EndContactScheme::analyse(problem);
+    massless_step().require_frictionless_planes(problem);
   }
+  [[nodiscard]] ProblemTraits traits_for(const SemidiscreteProblem&) const override { return {}; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    if (!problem.internal_force->is_linear()) return massless_step_.operators(problem, mean(problem));
-    std::vector<OperatorCoefficients> result = massless_step_.operators(problem, ReactionMean::end);
+    if (has_finite_strain()) return EndContactScheme::operators(problem);
+    std::vector<OperatorCoefficients> result = massless_step().operators(problem, ActingReaction::end);
     result.back().condensed_operator = -1;
     return result;
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
-    if (!problem.internal_force->is_linear()) {
-      massless_step_.advance(problem, mean(problem), state, stages, increment);
-      return;
-    }
+    if (has_finite_strain()) return EndContactScheme::advance(problem, state, stages, increment);
     const double h = step(), middle = state.time + 0.5 * h;
     const bool has_contact_nodes = problem.has_contact_dofs();
     const std::size_t number = MasslessContactStep::midpoint_stage(problem);
     Stage& stage = stages.stage(number);
-    massless_step_.balance(problem, state, stage);
-    require_no_penetration(problem, massless_step_.base(), middle, stage);
-    if (problem.has_moving_obstacles())
-      evaluate_obstacle_velocity(problem, massless_step_.base(), {middle, h, 1.0}, stage);
-    if (has_contact_nodes) massless_step_.find_residual(problem, state);
+    massless_step().balance(problem, state, stage);
+    require_no_penetration(problem, massless_step().base(), middle, stage);
+    evaluate_obstacle_velocity(problem, massless_step().base(), {middle, h, 1.0}, stage);
+    if (has_contact_nodes) massless_step().find_residual(problem, state);
     const StageSolution& solution = stages.solve(number);
     increment = h * state.velocity + 2.0 * solution.increment;
     copy_result(solution);
     if (has_contact_nodes) solve_end_contact(problem, state, stages, increment);
-    massless_step_.move(problem, solution.increment, increment, state);
-    massless_step_.store_forces(problem, stage, result_, increment, state);
+    massless_step().move(problem, solution.increment, increment, state);
+    massless_step().store_forces(problem, stage, result_, increment, state);
     corrections_ = {};
     if (has_contact_nodes)
       corrections_.contact_work =
-          -massless_step_.contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
+          -massless_step().contact_node_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
   [[nodiscard]] LastStep last_step() const override {
-    LastStep result = massless_step_.last_step();
-    if (!massless_step_.has_finite_strain()) result.corrections = corrections_;
+    LastStep result = EndContactScheme::last_step();
+    if (!has_finite_strain()) result.corrections = corrections_;
     return result;
   }
 
- protected:
-  void step_changed(const SemidiscreteProblem& problem) override { massless_step_.change_step(problem, step()); }
-
  private:
-  static ReactionMean mean(const SemidiscreteProblem& problem) {
-    return !problem.has_contact_dofs() ? ReactionMean::end : ReactionMean::path;
-  }
+  [[nodiscard]] ActingReaction acting(const SemidiscreteProblem&) const override { return ActingReaction::path_mean; }
   /// Computes the contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from their predicted displacement.
   void solve_end_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages,
                          Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
-    massless_step_.stiffness().multiply(increment, row_force_);
+    massless_step().stiffness().multiply(increment, row_force_);
     Stage& stage = stages.stage(MasslessContactStep::condensed_stage);
-    row_force_ = massless_step_.residual() + massless_step_.load_change() - row_force_;
+    row_force_ = massless_step().residual() + massless_step().load_change() - row_force_;
     MasslessContactStep::set_contact_force(problem, row_force_, stage);
     base_ = state.displacement + increment;
     require_no_penetration(problem, base_, state.time + step(), stage);
@@ -99,7 +83,6 @@ class ReducedMidpoint final : public Scheme {
     result_.contact_status = solution.contact_status;
   }
 
-  MasslessContactStep massless_step_;
   StepCorrections corrections_;
   StageSolution result_;
   Vector row_force_, base_;

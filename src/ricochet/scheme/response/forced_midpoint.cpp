@@ -25,8 +25,7 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
   const double energy_before = contact_energy(state.displacement, before_);
   normal_.setZero(before_.size());
   Stage& stage = balance(problem, state, stages);
-  if (problem.has_moving_obstacles())
-    evaluate_obstacle_velocity(problem, base(), {state.time + 0.5 * step(), step()}, stage);
+  evaluate_obstacle_velocity(problem, base(), {state.time + 0.5 * step(), step()}, stage);
   const StageSolution* solution = &solve_with_forces(problem, normal_, 0, stages);
   displacement_ = base() + solution->increment;
   problem.gaps(displacement_, end, free_);

@@ -23,7 +23,7 @@ class LaursenLove final : public Kane {
   }
   [[nodiscard]] LastStep last_step() const override {
     LastStep result = Kane::last_step();
-    result.other_parts = {&impulse_, acts_ ? 1U : 0U};
+    result.other_stages = {&impulse_, acts_ ? 1U : 0U};
     return result;
   }
 
@@ -85,7 +85,7 @@ class LaursenLove final : public Kane {
   ContactResponse response_{1};
   std::vector<Index> points_;
   Vector gap_, approach_, velocity_, kick_;
-  StepPart impulse_;
+  OtherStageForces impulse_;
   bool acts_ = false;
 };
 

@@ -1,12 +1,93 @@
 #include <map>
+#include <vector>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/scheme/response/dense_complementarity.hpp"
 #include "ricochet/scheme/response/forced_midpoint.hpp"
-#include "ricochet/scheme/response/nitsche_law.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// Contact law over a step of the midpoint rule, with per point s the force that balances the stress of the body, g the
+/// gap, Γ a stiffness, p = s − Γ g. The obstacle's force r and f = Sᵀ q are
+///   r = [½(p₀+p₁)]₊ where p₀ > 0, else ½[p₁]₊;   Γ q = ½(s₀+s₁) − r,
+/// and s₁ = s + S A⁻¹(Gᵀr + Sᵀq), g₁ = g + G A⁻¹(Gᵀr + Sᵀq) from s and g, those without forces.
+class NitscheLaw {
+ public:
+  /// `response` is [G; S] A⁻¹ [G; S]ᵀ, 2 points × 2 points; `stiffness` is Γ, with Γ − ½ S A⁻¹Sᵀ positive definite.
+  NitscheLaw(const Matrix& response, const Vector& stiffness);
+
+  /// p₀, s₀ and, without forces, s and g.
+  struct Points {
+    Vector p_before, s_before, s, gap;
+  };
+  /// Allocates nothing while no point presses.
+  void solve(const Points& points, Vector& r, Vector& q);
+
+ private:
+  Vector stiffness_;
+  Matrix q_of_stress_, q_of_r_;  ///< q = q_of_stress ½(s₀+s) + q_of_r r
+  Matrix p_of_q_;                ///< change of p₁ due to f
+  Matrix compliance_;            ///< decrease of p₁/Γ per r; with 2/Γ, symmetric
+  Vector mean_, p_;              ///< work space
+  std::vector<char> first_;
+};
+
+NitscheLaw::NitscheLaw(const Matrix& response, const Vector& stiffness) : stiffness_(stiffness) {
+  const Index n = stiffness.size();
+  const auto gg = response.topLeftCorner(n, n), gs = response.topRightCorner(n, n);
+  const auto sg = response.bottomLeftCorner(n, n), ss = response.bottomRightCorner(n, n);
+  Matrix own = -0.5 * ss;
+  own.diagonal() += stiffness;
+  q_of_stress_ = SmallCholesky(own).solve(Matrix::Identity(n, n));
+  q_of_r_ = q_of_stress_ * (0.5 * sg - Matrix::Identity(n, n));
+  p_of_q_ = ss - stiffness.asDiagonal() * gs;
+  const Matrix p_of_r = sg - stiffness.asDiagonal() * gg + p_of_q_ * q_of_r_;
+  compliance_ = -(stiffness.cwiseInverse().asDiagonal() * p_of_r);
+  compliance_ = Matrix(0.5 * (compliance_ + compliance_.transpose()));
+  compliance_.diagonal() += 2.0 * stiffness.cwiseInverse();
+}
+
+void NitscheLaw::solve(const Points& points, Vector& r, Vector& q) {
+  mean_ = 0.5 * (points.s_before + points.s);
+  q.noalias() = q_of_stress_ * mean_;
+  p_ = points.s - stiffness_.cwiseProduct(points.gap);
+  p_.noalias() += p_of_q_ * q;
+  first_.resize(static_cast<std::size_t>(p_.size()));
+  for (Index i = 0; i < p_.size(); ++i) {
+    first_[static_cast<std::size_t>(i)] = points.p_before[i] > 0.0 ? 1 : 0;
+    if (points.p_before[i] > 0.0) p_[i] += points.p_before[i];
+  }
+  p_ = p_.cwiseQuotient(stiffness_);
+  r.setZero(p_.size());
+  if (!(p_.maxCoeff() > 0.0)) return;
+  r = dense_complementarity(compliance_, p_, first_);
+  q.noalias() += q_of_r_ * r;
+}
+
+/// −½Σs²/Γ + ½Σ[p]₊²/Γ, the contribution of Nitsche's method to the energy.
+double nitsche_energy(const Vector& stiffness, const Vector& stress_force, const Vector& p) {
+  return 0.5 * (p.cwiseMax(0.0).cwiseAbs2() - stress_force.cwiseAbs2()).cwiseQuotient(stiffness).sum();
+}
+
+/// Dissipation of the law in a step: Σ 1/Γ times 0 if p₀, p₁ > 0; ½p₁² if p₀ > 0 ≥ p₁ and r > 0; ½p₀² if r = 0 < p₀;
+/// ½p₁|p₀| if p₁ > 0 ≥ p₀.
+double nitsche_dissipation(const Vector& stiffness, const Vector& p_before, const Vector& p_after) {
+  double sum = 0.0;
+  for (Index i = 0; i < stiffness.size(); ++i) {
+    const double before = p_before[i], after = p_after[i];
+    double lost = 0.0;
+    if (before > 0.0) {
+      if (after <= 0.0) lost = before + after > 0.0 ? after * after : before * before;
+    } else if (after > 0.0) {
+      lost = -before * after;
+    }
+    sum += 0.5 * lost / stiffness[i];
+  }
+  return sum;
+}
 
 /// Nitsche's method, symmetric (θ = 1), under the midpoint scheme with the hybrid contact term of F. Chouly, P. Hild
 /// and Y. Renard (ESAIM: M2AN 49 (2015) 481–502 and 503–528), at the contact points: with s_i the force of the obstacle

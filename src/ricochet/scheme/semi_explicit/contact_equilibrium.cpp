@@ -49,8 +49,7 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
   }
   stage.right_hand_side.prescribed.setZero(problem.supports.size());  // prescribed displacements are in the base
   require_no_penetration(problem, base_, state.time + step, stage);
-  if (problem.has_moving_obstacles())
-    evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);
+  evaluate_obstacle_velocity(problem, middle_, {state.time + 0.5 * step, step, 0.5}, stage);
   require_friction(problem, rate_, 1.0 / step, stage);
 }
 

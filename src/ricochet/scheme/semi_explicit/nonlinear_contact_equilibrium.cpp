@@ -48,7 +48,7 @@ void NonlinearContactEquilibrium::renew_where_slow(const SemidiscreteProblem& pr
   double& from = state.memory.at(contact_renewal)[0];
   if (static_cast<double>(state.step) < from) return;
   from = static_cast<double>(state.step) + steps_between_renewals;
-  stages.renew(state.displacement, state.displacement);
+  stages.renew_operators(state.displacement, state.displacement);
 }
 
 /// Moves contact nodes; `contact_increment` has the increments of contact dofs.
@@ -67,7 +67,7 @@ void NonlinearContactEquilibrium::evaluate(const SemidiscreteProblem& problem, c
       contact_cells_->evaluate(end, force_);
       return;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || !moved_ || halving == most_halvings) throw;
+      if (error.kind() != ErrorKind::not_converged || !moved_ || halving == max_halvings) throw;
     }
     part *= 0.5;
     point_ -= part * move_;
@@ -92,7 +92,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
                                                         const Vector& load, double step, StageSolve& stages,
                                                         Vector& increment, Vector& end) {
   if (!problem.has_contact_dofs()) return nullptr;
-  stages.follow(end);
+  stages.rotate_operators(end);
   Stage& stage = stages.stage(0);
   if (stage.right_hand_side.force.size() != problem.dof_count())
     stage.right_hand_side.force.setZero(problem.dof_count());
@@ -113,7 +113,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
     image_.setZero();
     if (std::isfinite(correction)) problem.gather_contact(solution.increment, image_);
     image_ += point_;
-    const NewtonProgress::Advice advice = progress_.judge(correction, image_.lpNorm<Eigen::Infinity>());
+    const NewtonProgress::Advice advice = progress_.assess(correction, image_.lpNorm<Eigen::Infinity>());
     if (advice == NewtonProgress::Advice::done) {
       move_to(problem, state, image_, increment, end);
       return &solution;
@@ -134,7 +134,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
     move_to(problem, state, point_, increment, end);
     evaluate(problem, state, increment, end);
     if (advice != NewtonProgress::Advice::renew) continue;
-    stages.renew(end, end);
+    stages.renew_operators(end, end);
     acceleration_.restart();
     progress_.count_renewal();
     progress_.restart();

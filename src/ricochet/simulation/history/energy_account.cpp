@@ -96,7 +96,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   enter(previous_, rule_.previous_weight, increment, rows);
   enter(state.forces, rule_.current_weight, increment, rows);
   const LastStep last = scheme_.last_step();
-  for (const StepPart& part : last.other_parts) {
+  for (const OtherStageForces& part : last.other_stages) {
     obstacle_ = part.obstacle_increment;
     rows = nullptr;
     enter(part.forces, part.weight, part.increment, rows);

@@ -244,7 +244,7 @@ void MomentumAccount::enter_step(const State& state) {
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
   enter(current, rule_.current_weight);
-  for (const StepPart& part : scheme_.last_step().other_parts) enter(resultant(part.forces), part.weight);
+  for (const OtherStageForces& part : scheme_.last_step().other_stages) enter(resultant(part.forces), part.weight);
   previous_ = current;
   const Resultant now = algorithmic(state);
   add_impulse(-scheme_.step(), {now.force - algorithmic_.force, now.moment - algorithmic_.moment});

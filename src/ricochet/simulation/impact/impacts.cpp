@@ -105,7 +105,7 @@ void ImpactRecorder::add_along_axis(Index point, double part, const SpaceVector&
 }
 
 void ImpactRecorder::find_other_forces() {
-  const std::span<const StepPart> parts = scheme_.last_step().other_parts;
+  const std::span<const OtherStageForces> parts = scheme_.last_step().other_stages;
   others_.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     others_[i].weight = parts[i].weight;
@@ -136,7 +136,7 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   find_other_forces();
   motion_ = nullptr;
   if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
-  const double instant = state.time + scheme_.traits().acting_instant * scheme_.step();
+  const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t collision = 0; collision < collision_pairs_.size(); ++collision)
     enter_collision_pair(collision, instant);
   std::swap(previous_, current_);

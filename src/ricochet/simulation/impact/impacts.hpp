@@ -163,7 +163,7 @@ class ImpactRecorder {
   std::vector<CollisionPair> collision_pairs_;
   std::vector<PointPart> parts_;  ///< ordered by points
   std::vector<Force> previous_, current_;
-  /// Forces of Scheme::other_parts.
+  /// Forces of Scheme::other_stages.
   struct OtherForces {
     double weight = 0.0;
     std::vector<Force> forces;

@@ -92,7 +92,7 @@ class LoadPath {
     Stage stage = stage_at(part, at.displacement);
     is_new_ = rate_ > slow && may_renew();
     if (is_new_) {
-      solver_->renew(at.displacement, at.displacement);
+      solver_->renew_operators(at.displacement, at.displacement);
       ++renewals_;
     }
     solver_->solve(0, stage, solution_);
@@ -112,7 +112,7 @@ class LoadPath {
   Stage stage_at(double part, const Vector& displacement) {
     find_forces(part, displacement);
     Stage stage = contact_stage(problem_, displacement, right_hand_side_);
-    stage.linearization.base.resize(0);  // one linear stage
+    stage.linearization.displacement.resize(0);  // one linear stage
     for (Index i = 0; i < problem_.supports.size(); ++i)
       stage.right_hand_side.prescribed[i] =
           part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];

@@ -25,8 +25,9 @@ Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displaceme
   Stage stage;
   stage.right_hand_side.force = std::move(right_hand_side);
   stage.right_hand_side.prescribed.setZero(problem.supports.size());
-  if (!problem.internal_force->is_linear()) stage.linearization.base = displacement;
+  if (!problem.internal_force->is_linear()) stage.linearization.displacement = displacement;
   require_no_penetration(problem, displacement, 0.0, stage);
+  stage.has_obstacle_velocity = true;  // of obstacles at rest
   return stage;
 }
 

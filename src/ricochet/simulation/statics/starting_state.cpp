@@ -166,7 +166,7 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.right_hand_side.prescribed = support_acceleration;
-  stage.linearization.base.resize(0);  // the unknown is an acceleration
+  stage.linearization.displacement.resize(0);  // the unknown is an acceleration
   stage.conditions.eligible = std::move(resting);
   stage.motion.reset();
   // The condition is on the sum of G a and this.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/base/dense_decompositions.hpp"
-#include "ricochet/linear_algebra/dense_cholesky.hpp"
+#include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/contact/cone_formulation.hpp"

@@ -52,6 +52,10 @@ bool ReusedFactor::map_rows(const ContactSystem& system, const std::vector<Conta
 }
 
 void ReusedFactor::persist(const SnapshotVisitor& visit, const std::vector<Index>& row_offset) {
+  if (visit.loads()) {
+    is_factored_ = false;
+    unknowns_.clear();
+  }
   std::vector<Index> rows, sizes;
   for (const ContactUnknown& unknown : unknowns_) {
     rows.push_back(unknown.problem_row);
@@ -60,7 +64,6 @@ void ReusedFactor::persist(const SnapshotVisitor& visit, const std::vector<Index
   visit("unknowns.rows", rows);
   visit("unknowns.sizes", sizes, {1, 3});
   if (visit.loads()) {
-    is_factored_ = false;
     visit.require(are_first_rows(row_offset, rows, false) && sizes.size() == rows.size(), "unknowns",
                   "do not belong to points of this problem");
     unknowns_.assign(rows.size(), {});

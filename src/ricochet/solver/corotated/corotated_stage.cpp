@@ -19,11 +19,8 @@ class CorotatedStage final : public StageSolver {
   }
   void show_contact() const override { solver_->show_contact(); }
   void refactorize(const Vector& displacement) override { solver_->refactorize(displacement); }
-  void observe_contact(const ContactObserver& observer) override { solver_->observe_contact(observer); }
   void persist(const SnapshotVisitor& visit) override { solver_->persist(visit); }
   [[nodiscard]] IterationCounts iteration_counts() const override { return solver_->iteration_counts(); }
-  [[nodiscard]] double contact_seconds() const override { return solver_->contact_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const override { return solver_->factor_entries(); }
   [[nodiscard]] FactoredStage* factored() override { return solver_->factored(); }
 
  private:
@@ -35,16 +32,11 @@ class CorotatedStage final : public StageSolver {
     const bool same_frame = rows_ != nullptr && frame_number_ == frame_.number();
     if (same_frame && (follows ? source_revision_ == rows.revision : source_ == &rows)) return;
     if (rows_ == nullptr) {
-      rows_ = std::make_shared<ContactRows>(rows);
+      rows_ = std::make_shared<ContactRows>();
       rows_->revision.assign(points, 0);
       source_revision_.assign(points, -1);
-    } else {
-      rows_->normals = rows.normals;
-      rows_->tangents = rows.tangents;
-      rows_->slips = rows.slips;
-      rows_->gap_rounding = rows.gap_rounding;
-      rows_->gap = rows.gap;
     }
+    static_cast<ContactFrames&>(*rows_) = rows;
     ++revision_;
     for (std::size_t i = 0; i < points; ++i) {
       const long now = follows ? rows.revision[i] : 0;

@@ -13,20 +13,20 @@
 namespace ricochet {
 
 DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown,
-                                 const SparseCholesky& factor, bool all_points,
+                                 const SparseCholesky& factor, SharedContact& shared,
                                  std::unique_ptr<MasslessContactNodes> massless_nodes)
     : problem_(problem),
       factor_(factor),
       unknown_(std::move(unknown)),
       scale_(factor.scale()),
       friction_(problem.contact.has_friction()),
-      all_points_(all_points),
+      shared_(shared),
       rows_(problem.contact.rows.get()),
       candidates_(problem.contact.size(), *problem.ranks),
       columns_(factor),
       massless_nodes_(std::move(massless_nodes)) {
   contact_.reaction_scale = scale_;
-  std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
+  std::vector<Index> points(shared.all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
   std::iota(points.begin(), points.end(), Index{0});
   start_again_with(points);
 }
@@ -237,11 +237,11 @@ void DelassusProblem::solve(const LinearStage& stage, Vector& y, StageSolution& 
   if (std::none_of(stage.conditions.eligible.begin(), stage.conditions.eligible.end(), [](char e) { return e != 0; }))
     return;
   add_initial_candidates(stage);
-  if (!all_points_ && !choose_candidates(stage)) return;
+  if (!shared_.all_points && !choose_candidates(stage)) return;
   add_initial_candidates(stage);  // candidates that were dropped
   find_offsets(stage, y);
   choose_friction(stage);
-  const bool has_mean = massless_nodes_ && massless_nodes_->mean() != ReactionMean::end;
+  const bool has_mean = massless_nodes_ && massless_nodes_->acting() != ActingReaction::end;
   if (has_mean) {
     solve_mean(stage);
   } else {
@@ -276,7 +276,7 @@ void DelassusProblem::write_solution(const LinearStage& stage, StageSolution& so
     for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
-  if (massless_nodes_ && massless_nodes_->mean() != ReactionMean::end) write_mean_reactions(stage, solution);
+  if (massless_nodes_ && massless_nodes_->acting() != ActingReaction::end) write_mean_reactions(stage, solution);
 }
 
 bool DelassusProblem::add_penetrating(const LinearStage& stage, const Vector& increment, StageSolution& solution) {
@@ -320,7 +320,7 @@ void DelassusProblem::choose_friction(const LinearStage& stage) {
 bool DelassusProblem::try_contact() {
   const Timer timer;
   solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
-  solver_seconds_ += timer.seconds();
+  shared_.solver_seconds += timer.seconds();
   iterations_ += contact_solution_.iterations;
   if (log::enabled(log::Level::debug)) log_iterations();
   return contact_solution_.solved();
@@ -328,7 +328,7 @@ bool DelassusProblem::try_contact() {
 
 void DelassusProblem::solve_contact() {
   if (try_contact()) return;
-  if (observer_) observer_(contact_, contact_solution_);
+  if (shared_.observer) shared_.observer(contact_, contact_solution_);
   throw_not_solved();
 }
 
@@ -348,7 +348,7 @@ void DelassusProblem::log_iterations() const {
 }
 
 void DelassusProblem::report() const {
-  if (candidates_active_ && observer_) observer_(contact_, contact_solution_);
+  if (candidates_active_ && shared_.observer) shared_.observer(contact_, contact_solution_);
 }
 
 }  // namespace ricochet

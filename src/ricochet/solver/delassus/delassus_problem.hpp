@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/corotated/rotating_rows.hpp"
 #include "ricochet/solver/delassus/contact_candidates.hpp"
 #include "ricochet/solver/delassus/delassus_columns.hpp"
 #include "ricochet/solver/delassus/massless_contact_nodes.hpp"
 #include "ricochet/solver/mean_reaction/mean_reaction.hpp"
+#include "ricochet/solver/stage/shared_contact.hpp"
 #include "ricochet/step/stage.hpp"
 
 /// @file Contact conditions of a stage, condensed on its candidates for contact.
@@ -25,9 +25,9 @@ namespace ricochet {
 class DelassusProblem {
  public:
   /// `unknown` is per dof: its number among the unknowns of the factor, or −1 if the stage does not solve for it.
-  /// `all_points`: every contact point is a candidate from the start. Keeps references to the problem and the factor.
+  /// Keeps references to the problem, the factor and `shared`.
   DelassusProblem(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
-                  bool all_points = false, std::unique_ptr<MasslessContactNodes> massless_nodes = nullptr);
+                  SharedContact& shared, std::unique_ptr<MasslessContactNodes> massless_nodes = nullptr);
 
   /// Computes the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
   /// Error(not_converged), and Error(invalid_input) if no motion of linear bodies meets the conditions of contact.
@@ -46,10 +46,6 @@ class DelassusProblem {
   /// Shows the contact problem of a solved stage, if it had one, to the observer (one that could not be solved is shown
   /// at once).
   void report() const;
-  /// Sets the observer; none if empty.
-  void observe(ContactObserver observer) { observer_ = std::move(observer); }
-  /// Time spent in the contact solver, in all calls so far.
-  [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
 
  private:
   [[nodiscard]] Index rows_of(Index point) const;
@@ -95,7 +91,7 @@ class DelassusProblem {
   std::vector<int> unknown_;
   double scale_;
   bool friction_;
-  bool all_points_;
+  SharedContact& shared_;
   bool candidates_required_ = false;  ///< points have penetrated where none was expected to touch
   bool candidates_active_ = false;    ///< the candidates took part in the last stage
   bool has_new_factor_ = false;
@@ -115,9 +111,7 @@ class DelassusProblem {
   ContactProblem contact_;      ///< W, q, and the friction of the stage
   std::unique_ptr<ContactSolver> solver_;
   ContactSolution contact_solution_;
-  Vector motion_;  ///< G δ, per contact point
-  ContactObserver observer_;
-  double solver_seconds_ = 0.0;
+  Vector motion_;       ///< G δ, per contact point
   int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may require several
 };
 

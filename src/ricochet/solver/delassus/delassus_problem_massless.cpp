@@ -106,7 +106,7 @@ void DelassusProblem::set_contact_operator(Matrix w) {
   Matrix massless_compliance = massless_nodes_->compliance() / scale_;
   if (rotating_rows_.any()) massless_compliance = rotating_rows_.product(massless_compliance);
   mean_.prepare((1.0 - 0.5 * massless_nodes_->weight()) * massless_compliance, w - massless_compliance,
-                contact_.row_offset, massless_nodes_->mean());
+                contact_.row_offset, massless_nodes_->acting());
   if (!rotating_rows_.any()) column_product_ = std::move(w);
   use_end_weight(mean_.theta());
 }
@@ -120,7 +120,7 @@ void DelassusProblem::use_end_weight(double theta) {
 
 void DelassusProblem::add_initial_candidates(const LinearStage& stage) {
   std::vector<Index> pressing;
-  if (massless_nodes_) pressing = pressing_at_start(massless_nodes_->mean(), stage);
+  if (massless_nodes_) pressing = pressing_at_start(massless_nodes_->acting(), stage);
   candidates_required_ = candidates_required_ || !pressing.empty();
   std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
   if (!pressing.empty()) add_candidates(pressing);
@@ -142,7 +142,7 @@ void DelassusProblem::solve_mean(const LinearStage& stage) {
   // The problem that remains, and is exported, is the last one solved.
   if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
   contact_.offset = offset;
-  if (massless_nodes_->mean() == ReactionMean::path) throw_no_mean();
+  if (massless_nodes_->acting() == ActingReaction::path_mean) throw_no_mean();
   if (!mean_.is_usable()) {  // the operator is that of the end reactions
     solve_contact();
     mean_.set_end_reaction(contact_solution_.reaction);

@@ -25,15 +25,12 @@ SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>&
 class DirectStage final : public StageSolver {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-              const StepSolverOptions& options, FactoredStage* condensed_stage);
+              SharedContact& shared, FactoredStage* condensed_stage);
 
   void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override { stage_.report(); }
-  void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
   void persist(const SnapshotVisitor& visit) override { stage_.persist(visit); }
-  [[nodiscard]] double contact_seconds() const override { return stage_.contact_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const override { return stage_.factor_entries(); }
   [[nodiscard]] FactoredStage* factored() override { return &stage_; }
 
  private:
@@ -47,11 +44,11 @@ class DirectStage final : public StageSolver {
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                         AnalysedOperator analysed, const StepSolverOptions& options, FactoredStage* condensed_stage)
+                         AnalysedOperator analysed, SharedContact& shared, FactoredStage* condensed_stage)
     : problem_(problem),
       coefficients_(coefficients),
       supported_(std::move(analysed.supported)),
-      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points, condensed_stage) {}
+      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), shared, condensed_stage) {}
 
 void DirectStage::refactorize(const Vector& displacement) {
   SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
@@ -91,8 +88,8 @@ AnalysedOperator analyse_operator(const SemidiscreteProblem& problem, const Oper
 
 std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-                                               const StepSolverOptions& options, FactoredStage* condensed_stage) {
-  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), options, condensed_stage);
+                                               SharedContact& shared, FactoredStage* condensed_stage) {
+  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), shared, condensed_stage);
 }
 
 }  // namespace ricochet

@@ -19,11 +19,10 @@ struct AnalysedOperator {
                                                 const OperatorCoefficients& coefficients);
 
 /// Forward solve, condensed contact problem, back solve. `condensed_stage` is the stage of A_c, if the coefficients
-/// name one; keeps a reference to it. Throws Error(invalid_input) if A is not positive definite.
+/// name one; keeps references to it and to `shared`. Throws Error(invalid_input) if A is not positive definite.
 [[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                              const OperatorCoefficients& coefficients,
-                                                             AnalysedOperator analysed,
-                                                             const StepSolverOptions& options,
+                                                             AnalysedOperator analysed, SharedContact& shared,
                                                              FactoredStage* condensed_stage = nullptr);
 
 }  // namespace ricochet

@@ -20,16 +20,18 @@ SparseCholesky factorized(SparseCholesky factor, const SemidiscreteProblem& prob
 }  // namespace
 
 FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                             const std::vector<int>& dofs, SparseCholesky factor, bool all_points,
+                             const std::vector<int>& dofs, SparseCholesky factor, SharedContact& shared,
                              FactoredStage* condensed_stage)
-    : factor_(factorized(std::move(factor), problem, coefficients, dofs)),
-      contact_(problem, number_dofs(problem, dofs), factor_, all_points,
+    : shared_(shared),
+      factor_(factorized(std::move(factor), problem, coefficients, dofs)),
+      contact_(problem, number_dofs(problem, dofs), factor_, shared,
                condensed_stage != nullptr
                    ? std::make_unique<MasslessContactNodes>(problem, coefficients, *condensed_stage)
                    : nullptr) {
   dof_at_.reserve(dofs.size());
   for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
   factor_vector_.setZero(factor_.work_size());
+  shared_.factor_entries += factor_.factor_entries();
 }
 
 void FactoredStage::refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,

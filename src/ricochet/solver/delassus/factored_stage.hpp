@@ -13,11 +13,12 @@ class FactoredStage {
  public:
   /// Factorizes. `dofs` are those of the unknowns of `factor`, which has been analysed; `coefficients` are those of A,
   /// for the error. `condensed_stage` is the stage of the operator A_c, if these coefficients name one, whose factor is
-  /// used. Keeps references to the problem and to `condensed_stage`. Throws Error(invalid_input) if A is not positive
-  /// definite.
+  /// used. Keeps references to the problem, to `shared` and to `condensed_stage`. Throws Error(invalid_input) if A is
+  /// not positive definite.
   FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const std::vector<int>& dofs, SparseCholesky factor, bool all_points,
+                const std::vector<int>& dofs, SparseCholesky factor, SharedContact& shared,
                 FactoredStage* condensed_stage = nullptr);
+  ~FactoredStage() { shared_.factor_entries -= factor_.factor_entries(); }
   FactoredStage(const FactoredStage&) = delete;
   FactoredStage& operator=(const FactoredStage&) = delete;
 
@@ -36,11 +37,9 @@ class FactoredStage {
   /// Saves and loads the data that the contact conditions leave for later stages.
   void persist(const SnapshotVisitor& visit) { contact_.persist(visit); }
   void report() const { contact_.report(); }
-  void observe(const ContactObserver& observer) { contact_.observe(observer); }
-  [[nodiscard]] double contact_seconds() const { return contact_.solver_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const { return factor_.factor_entries(); }
 
  private:
+  SharedContact& shared_;
   SparseCholesky factor_;
   std::vector<int> dof_at_;  ///< per row of the factor
   DelassusProblem contact_;

@@ -8,7 +8,7 @@ namespace ricochet {
 MasslessContactNodes::MasslessContactNodes(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                                            FactoredStage& condensed_stage)
     : weight_(coefficients.condensed_weight),
-      mean_(coefficients.mean),
+      acting_(coefficients.acting),
       problem_(problem),
       factor_(condensed_stage.factor()),
       dof_at_(condensed_stage.dofs()),

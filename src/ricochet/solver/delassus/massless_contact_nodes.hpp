@@ -21,7 +21,7 @@ class MasslessContactNodes {
 
   /// Weight ℓ.
   [[nodiscard]] double weight() const { return weight_; }
-  [[nodiscard]] ReactionMean mean() const { return mean_; }
+  [[nodiscard]] ActingReaction acting() const { return acting_; }
   /// Per dof of the problem: its number among the unknowns of A_c, or −1.
   [[nodiscard]] const std::vector<int>& unknown() const { return unknown_; }
   [[nodiscard]] Index size() const;
@@ -42,7 +42,7 @@ class MasslessContactNodes {
 
  private:
   double weight_;
-  ReactionMean mean_;
+  ActingReaction acting_;
   const SemidiscreteProblem& problem_;
   SparseCholesky& factor_;
   const std::vector<int>& dof_at_;
@@ -55,9 +55,9 @@ class MasslessContactNodes {
 
 /// Eligible points with a normal reaction at the start of a step, which a mean contains wherever the points move; empty
 /// if the end reactions act.
-inline std::vector<Index> pressing_at_start(ReactionMean mean, const LinearStage& stage) {
+inline std::vector<Index> pressing_at_start(ActingReaction acting, const LinearStage& stage) {
   std::vector<Index> result;
-  if (mean == ReactionMean::end) return result;
+  if (acting == ActingReaction::end) return result;
   for (Index i = 0; i < stage.start.normal_reaction.size(); ++i) {
     if (stage.start.normal_reaction[i] > 0.0 && stage.conditions.eligible[static_cast<std::size_t>(i)] != 0)
       result.push_back(i);

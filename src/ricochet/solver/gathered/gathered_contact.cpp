@@ -1,11 +1,10 @@
 #include "ricochet/solver/gathered/gathered_contact.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <stdexcept>
 
-#include "ricochet/solver/gathered/number_reader.hpp"
+#include "ricochet/solver/gathered/point_messages.hpp"
 
 namespace ricochet {
 
@@ -24,57 +23,19 @@ class NoForce final : public InternalForce {
   [[noreturn]] static void refuse() { throw std::logic_error("gathered contact has no internal forces"); }
 };
 
-void append_row(const SparseRowMatrix& matrix, Index row, Index per_node, const Ranks& ranks,
-                std::vector<double>& message) {
-  const auto* const outer = matrix.outerIndexPtr();
-  message.push_back(static_cast<double>(outer[row + 1] - outer[row]));
-  for (SparseRowMatrix::InnerIterator entry(matrix, row); entry; ++entry) {
-    const Index node = entry.col() / per_node;
-    message.push_back(static_cast<double>(ranks.number_of(node) * per_node + entry.col() % per_node));
-    message.push_back(entry.value());
-  }
-}
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-void read_row(NumberReader& message, Index row, Index per_node, const GatheredNodes& nodes, Triplets& entries) {
-  for (Index count = message.integer(); count > 0; --count) {
-    const Index dof = message.integer();
-    const Index column = nodes.index_of(dof / per_node) * per_node + dof % per_node;
-    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), message.next());
-  }
-}
-
-void copy_row(const SparseRowMatrix& matrix, Index row, Triplets& entries) {
-  for (SparseRowMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-    entries.emplace_back(static_cast<int>(row), static_cast<int>(entry.col()), entry.value());
-}
-
-/// Appends all row data of a point.
-void append_point(const ContactRows& rows, Index point, Index d, const Ranks& ranks, std::vector<double>& message) {
-  const auto append = [&message](const auto& values) {
-    message.insert(message.end(), values.data(), values.data() + values.size());
-  };
-  message.push_back(static_cast<double>(point));
-  append(rows.normals.col(point));
-  append(rows.tangents[static_cast<std::size_t>(point)]);
-  for (Index row = point * (d - 1); row < (point + 1) * (d - 1); ++row)
-    message.push_back(rows.slips[static_cast<std::size_t>(row)]);
-  message.push_back(rows.gap_rounding[point]);
-  append_row(rows.gap_operator, point, d, ranks, message);
-  for (Index row = point * (d - 1); row < (point + 1) * (d - 1); ++row)
-    append_row(rows.tangential_trace, row, d, ranks, message);
-}
-
-SparseRowMatrix matrix_of(const Triplets& entries, Index rows, Index columns) {
-  SparseRowMatrix result(rows, columns);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
-
 SparseRowMatrix with_columns(SparseRowMatrix matrix, Index columns) {
   matrix.conservativeResize(matrix.rows(), columns);
   return matrix;
+}
+
+/// Adds the reactions at the points of a part; all other points of the part are open.
+void add_reactions(const StageSolution& part, StageSolution& solution) {
+  solution.normal_reaction += part.normal_reaction;
+  if (part.tangential_reaction.size() > 0) solution.tangential_reaction += part.tangential_reaction;
+  if (part.mean_normal_reaction.size() > 0) solution.mean_normal_reaction = part.mean_normal_reaction;
+  if (part.mean_tangential_reaction.size() > 0) solution.mean_tangential_reaction = part.mean_tangential_reaction;
+  for (std::size_t i = 0; i < solution.contact_status.size(); ++i)
+    solution.contact_status[i] = std::max(solution.contact_status[i], part.contact_status[i]);
 }
 
 }  // namespace
@@ -107,70 +68,47 @@ std::vector<Index> GatheredContact::named_by_all(const std::vector<Index>& nodes
   return result;
 }
 
-/// Gathers everything except the rows, and allocates these.
-void GatheredContact::gather_boundary() {
+template <class Values>
+void GatheredContact::gather_values(const std::vector<Index>& points, const Values& values, bool keeps,
+                                    Values& at_root) const {
   const Ranks& ranks = *problem_.ranks;
-  const ContactBoundary& own = problem_.contact;
   Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
   std::vector<double>& message = sent[static_cast<std::size_t>(nodes_.root())];
-  for (Index point = 0; point < own.size(); ++point) {
-    message.insert(message.end(), {static_cast<double>(own.pair[static_cast<std::size_t>(point)]), own.weights[point],
-                                   own.friction_coefficient[point], own.friction_bound[point], own.net[point]});
-    append_row(own.trace, point, 1, ranks, message);
-    append_row(own.own_trace, point, 1, ranks, message);
+  message.push_back(static_cast<double>(points.size()));
+  for (const Index point : points) message.push_back(static_cast<double>(point));
+  PointWriter writer(ranks, d_, points, message);
+  persist(writer, values);
+  const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
+  if (!is_root()) return;
+  std::vector<PointReader::Part> parts;
+  for (std::size_t rank = 0; rank < received.size(); ++rank) {
+    NumberReader numbers(received[rank]);
+    std::vector<Index> own(static_cast<std::size_t>(numbers.integer()));
+    for (Index& point : own) point = number(static_cast<int>(rank), numbers.integer());
+    parts.push_back({numbers, std::move(own)});
   }
-  received_ = ranks.exchange(std::move(sent));
+  PointReader reader(d_, point_count(), nodes_, keeps, std::move(parts));
+  persist(reader, at_root);
+}
+
+/// Gathers everything that the contact points have.
+void GatheredContact::gather_boundary() {
+  const ContactBoundary& own = problem_.contact;
+  std::vector<Index> points(static_cast<std::size_t>(own.size()));
+  std::iota(points.begin(), points.end(), 0);
+  boundary_.dimension = d_;
+  gather_values(points, own, false, boundary_);
   Vector solved = Vector::Zero(problem_.dof_count());
   for (const Index dof : problem_.contact_dofs) solved[dof] = 1.0;
   const Vector is_solved = nodes_.gather(solved, d_);
-  if (is_root()) {
-    read_boundary();
-    for (Index dof = 0; dof < is_solved.size(); ++dof) {
-      if (is_solved[dof] > 0.0) contact_dofs_.push_back(dof);
-    }
-    rows_ = empty_rows();
+  for (Index dof = 0; dof < is_solved.size(); ++dof) {
+    if (is_solved[dof] > 0.0) contact_dofs_.push_back(dof);
   }
   gather_rows(*own.rows);
 }
 
-void GatheredContact::read_boundary() {
-  const Index points = point_count();
-  boundary_.dimension = d_;
-  boundary_.pair.resize(static_cast<std::size_t>(points));
-  const std::array<Vector*, 4> per_point{&boundary_.weights, &boundary_.friction_coefficient, &boundary_.friction_bound,
-                                         &boundary_.net};
-  for (Vector* const values : per_point) values->setZero(points);
-  boundary_.initial_gap.setZero(points);
-  Triplets trace, own_trace;
-  Index point = 0;
-  for (const std::vector<double>& from : received_) {
-    for (NumberReader numbers(from); !numbers.is_at_end(); ++point) {
-      boundary_.pair[static_cast<std::size_t>(point)] = static_cast<int>(numbers.integer());
-      for (Vector* const values : per_point) (*values)[point] = numbers.next();
-      read_row(numbers, point, 1, nodes_, trace);
-      read_row(numbers, point, 1, nodes_, own_trace);
-    }
-  }
-  boundary_.trace = matrix_of(trace, points, nodes_.count());
-  boundary_.own_trace = matrix_of(own_trace, points, nodes_.count());
-}
-
-std::shared_ptr<ContactRows> GatheredContact::empty_rows() const {
-  const Index points = point_count();
-  auto rows = std::make_shared<ContactRows>();
-  rows->normals.setZero(d_, points);
-  rows->tangents.assign(static_cast<std::size_t>(points), Points::Zero(d_, d_ - 1));
-  rows->slips.assign(static_cast<std::size_t>(points * (d_ - 1)), 0);
-  rows->gap_rounding.setZero(points);
-  rows->gap_operator.resize(points, nodes_.count() * d_);
-  rows->tangential_trace.resize(points * (d_ - 1), nodes_.count() * d_);
-  if (problem_.contact.follows_motion()) rows->revision.assign(static_cast<std::size_t>(points), 0);
-  return rows;
-}
-
-/// Gathers the changed rows.
+/// Gathers the changed rows and merges them with the others in new storage: others may keep those of earlier stages.
 void GatheredContact::gather_rows(const ContactRows& rows) {
-  const Ranks& ranks = *problem_.ranks;
   const bool is_first = changes_++ == 0;
   std::vector<Index> changed;
   for (Index point = 0; point < rows.size(); ++point) {
@@ -178,44 +116,12 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
     if (is_first || rows.revision[at] != revision_[at]) changed.push_back(point);
   }
   revision_ = rows.revision;
-  if (!ranks.any(!changed.empty())) return;
-  Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = sent[static_cast<std::size_t>(nodes_.root())];
-  for (const Index point : changed) append_point(rows, point, d_, ranks, message);
-  received_ = ranks.exchange(std::move(sent));
-  if (is_root()) rows_ = read_rows();
-}
-
-/// Merges the received rows with the unchanged ones, in new storage: others may keep those of earlier stages.
-std::shared_ptr<ContactRows> GatheredContact::read_rows() const {
-  auto rows = std::make_shared<ContactRows>(*rows_);
-  std::vector<char> is_new(static_cast<std::size_t>(point_count()), 0);
-  Triplets gap, slip;
-  const auto slip_rows = [this](Index point, const auto& visit) {
-    for (Index row = point * (d_ - 1); row < (point + 1) * (d_ - 1); ++row) visit(row);
-  };
-  for (std::size_t rank = 0; rank < received_.size(); ++rank) {
-    for (NumberReader numbers(received_[rank]); !numbers.is_at_end();) {
-      const Index point = number(static_cast<int>(rank), numbers.integer());
-      const auto at = static_cast<std::size_t>(point);
-      is_new[at] = 1;
-      numbers.fill(rows->normals.col(point));
-      numbers.fill(rows->tangents[at]);
-      slip_rows(point, [&](Index row) { rows->slips[static_cast<std::size_t>(row)] = numbers.next() != 0.0 ? 1 : 0; });
-      rows->gap_rounding[point] = numbers.next();
-      if (!rows->revision.empty()) rows->revision[at] = changes_;
-      read_row(numbers, point, d_, nodes_, gap);
-      slip_rows(point, [&](Index row) { read_row(numbers, row, d_, nodes_, slip); });
-    }
-  }
-  for (Index point = 0; point < point_count(); ++point) {
-    if (is_new[static_cast<std::size_t>(point)] != 0) continue;
-    copy_row(rows_->gap_operator, point, gap);
-    slip_rows(point, [&](Index row) { copy_row(rows_->tangential_trace, row, slip); });
-  }
-  rows->gap_operator = matrix_of(gap, point_count(), nodes_.count() * d_);
-  rows->tangential_trace = matrix_of(slip, point_count() * (d_ - 1), nodes_.count() * d_);
-  return rows;
+  if (!problem_.ranks->any(!changed.empty())) return;
+  const auto merged = rows_ ? std::make_shared<ContactRows>(*rows_) : std::make_shared<ContactRows>();
+  ContactRows sent = rows;
+  std::fill(sent.revision.begin(), sent.revision.end(), changes_);
+  gather_values(changed, sent, true, *merged);
+  rows_ = merged;
 }
 
 std::shared_ptr<const ContactRows> GatheredContact::rows_on(const ContactRows& rows, Index dofs) {
@@ -243,6 +149,52 @@ std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const Gathere
   result->obstacles = problem_.obstacles;
   result->is_massless.assign(static_cast<std::size_t>(result->dof_count()), 0);
   return result;
+}
+
+void GatheredContact::gather(const LinearStage& stage, const Vector& x, const std::vector<Index>& points,
+                             Stage& at_root) {
+  if (problem_.contact.follows_motion()) gather_rows(stage.rows);
+  sent_stage_.conditions = stage.conditions;
+  sent_stage_.start = stage.start;
+  AffineMotion &gap = sent_stage_.conditions.gap, &slip = sent_stage_.conditions.slip;
+  stage.rows.normal_motion(x, motion_);
+  gap.offset += gap.factor * motion_;
+  if (slip.offset.size() > 0) {
+    stage.rows.tangential_motion(x, motion_);
+    slip.offset += slip.factor * motion_;
+  }
+  gather_values(points, sent_stage_, false, at_root);
+  at_root.conditions.gap.factor = gap.factor;
+  at_root.conditions.slip.factor = slip.factor;
+  at_root.right_hand_side.prescribed.resize(0);
+  at_root.rows = rows_;
+}
+
+void GatheredContact::scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) {
+  const Ranks& ranks = *problem_.ranks;
+  const auto size = static_cast<std::size_t>(ranks.size());
+  Ranks::ForEach<std::int64_t> requested(size);
+  requested[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
+  const Ranks::ForEach<std::int64_t> requests = ranks.exchange(std::move(requested));
+  Ranks::ForEach<double> sent(size);
+  for (std::size_t rank = 0; is_root() && rank < size; ++rank) {
+    std::vector<Index> of_rank;
+    for (const std::int64_t point : requests[rank]) of_rank.push_back(number(static_cast<int>(rank), point));
+    sent[rank] = {static_cast<double>(at_root.iterations), at_root.end_weight};
+    PointWriter writer(ranks, d_, of_rank, sent[rank]);
+    persist(writer, at_root);
+  }
+  const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
+  NumberReader numbers(received[static_cast<std::size_t>(nodes_.root())]);
+  solution.iterations += static_cast<int>(numbers.integer());
+  solution.end_weight = numbers.next();
+  PointReader reader(d_, problem_.contact.size(), nodes_, false, {{numbers, points}});
+  persist(reader, received_solution_);
+  add_reactions(received_solution_, solution);
+  // The works of the ranks are summed.
+  if (!is_root()) return;
+  solution.path_contact_work = at_root.path_contact_work;
+  solution.path_friction_work = at_root.path_friction_work;
 }
 
 }  // namespace ricochet

@@ -36,7 +36,7 @@ class GatheredContact {
   /// Adds the reactions and iterations of the solution at the root on these points; the status of a point becomes the
   /// larger one. Mean reactions and their weight are those of the root, which also has the works of the path: the
   /// ranks' works are summed.
-  void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) const;
+  void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution);
 
   /// Number, at the root, of a point of a rank.
   [[nodiscard]] Index number(int rank, Index point) const { return first_[static_cast<std::size_t>(rank)] + point; }
@@ -44,16 +44,11 @@ class GatheredContact {
 
  private:
   void gather_boundary();
-  void read_boundary();
-  [[nodiscard]] std::shared_ptr<ContactRows> empty_rows() const;
   void gather_rows(const ContactRows& rows);
-  [[nodiscard]] std::shared_ptr<ContactRows> read_rows() const;
-  void write_points(const LinearStage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
-  void read_points(Stage& at_root) const;
-  void write_solution(const StageSolution& at_root, int rank, const std::vector<std::int64_t>& points,
-                      std::vector<double>& message) const;
-  void read_solution(const std::vector<double>& message, const std::vector<Index>& points,
-                     StageSolution& solution) const;
+  /// Sends the values of these points of each rank to the root, where they are entered in `at_root`; those of other
+  /// points are kept there, or zero.
+  template <class Values>
+  void gather_values(const std::vector<Index>& points, const Values& values, bool keeps, Values& at_root) const;
 
   const SemidiscreteProblem& problem_;
   int d_;
@@ -64,8 +59,9 @@ class GatheredContact {
   std::shared_ptr<ContactRows> rows_;  ///< at the root: those of the last stage
   std::vector<long> revision_;         ///< of rows of this rank when they were sent
   long changes_ = 0;                   ///< of rows; different rows have different revisions at the root
-  Vector motion_, slip_;
-  Ranks::ForEach<double> received_;
+  Stage sent_stage_;                   ///< conditions and start values of this rank, about x
+  StageSolution received_solution_;    ///< reactions of points of this rank
+  Vector motion_;
 };
 
 }  // namespace ricochet

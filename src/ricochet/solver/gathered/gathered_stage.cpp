@@ -18,8 +18,8 @@ namespace {
 /// gaps.
 class GatheredStage final : public StageSolver {
  public:
-  GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const StepSolverOptions& options, GatheredContact& contact);
+  GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, SharedContact& shared,
+                GatheredContact& contact);
 
   void solve(const LinearStage& stage, StageSolution& solution) override;
   void refactorize(const Vector&) override {
@@ -28,9 +28,6 @@ class GatheredStage final : public StageSolver {
   void show_contact() const override {
     if (stage_) stage_->show_contact();
   }
-  void observe_contact(const ContactObserver& observer) override {
-    if (stage_) stage_->observe_contact(observer);
-  }
   void persist(const SnapshotVisitor& visit) override {
     const auto at_root = [&] {
       if (stage_) stage_->persist(visit);
@@ -38,8 +35,6 @@ class GatheredStage final : public StageSolver {
     if (!visit.loads()) return at_root();
     problem_.ranks->run_collectively(at_root);
   }
-  [[nodiscard]] double contact_seconds() const override { return stage_ ? stage_->contact_seconds() : 0.0; }
-  [[nodiscard]] std::size_t factor_entries() const override { return stage_ ? stage_->factor_entries() : 0; }
   [[nodiscard]] FactoredStage* factored() override { return stage_ ? stage_->factored() : nullptr; }
 
  private:
@@ -80,7 +75,7 @@ SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTe
 }
 
 GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                             const StepSolverOptions& options, GatheredContact& contact)
+                             SharedContact& shared, GatheredContact& contact)
     : problem_(problem), contact_(contact) {
   const int d = problem.dimension;
   const std::vector<Index>& nodes = contact.nodes().nodes();
@@ -97,7 +92,7 @@ GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorC
     const std::vector<int> number = number_dofs(*root_problem_, analysed.dofs);
     const auto count = static_cast<Index>(analysed.dofs.size());
     analysed.factor.analyse(extract(gathered, number, count, number, count));
-    stage_ = make_direct_stage(*root_problem_, coefficients, std::move(analysed), options);
+    stage_ = make_direct_stage(*root_problem_, coefficients, std::move(analysed), shared);
   });
 }
 
@@ -131,9 +126,9 @@ void GatheredStage::solve(const LinearStage& stage, StageSolution& solution) {
 }  // namespace
 
 std::unique_ptr<StageSolver> make_gathered_stage(const SemidiscreteProblem& problem,
-                                                 const OperatorCoefficients& coefficients,
-                                                 const StepSolverOptions& options, GatheredContact& contact) {
-  return std::make_unique<GatheredStage>(problem, coefficients, options, contact);
+                                                 const OperatorCoefficients& coefficients, SharedContact& shared,
+                                                 GatheredContact& contact) {
+  return std::make_unique<GatheredStage>(problem, coefficients, shared, contact);
 }
 
 }  // namespace ricochet

@@ -12,7 +12,6 @@ class GatheredContact;
 /// Stage on the dofs of contact nodes on several ranks, with a factor on one of them. Keeps a reference to `gathered`.
 [[nodiscard]] std::unique_ptr<StageSolver> make_gathered_stage(const SemidiscreteProblem& problem,
                                                                const OperatorCoefficients& coefficients,
-                                                               const StepSolverOptions& options,
-                                                               GatheredContact& gathered);
+                                                               SharedContact& shared, GatheredContact& gathered);
 
 }  // namespace ricochet

@@ -14,10 +14,10 @@ constexpr std::size_t max_roots = 16;
 
 class GatheredSubdomains final : public ContactRegion {
  public:
-  GatheredSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact,
+  GatheredSubdomains(const DistributedRegion& body, SharedContact& shared, GatheredContact& contact,
                      FactoredStage* condensed_stage)
-      : body_(body), all_points_(all_points) {
-    roots_.push_back({nullptr, std::make_unique<RootSubdomains>(body, all_points, contact, condensed_stage)});
+      : body_(body), shared_(shared) {
+    roots_.push_back({nullptr, std::make_unique<RootSubdomains>(body, shared, contact, condensed_stage)});
   }
 
   void make(const std::vector<Index>& points) override;
@@ -32,28 +32,13 @@ class GatheredSubdomains final : public ContactRegion {
                    Vector& motion) override;
 
   void persist(const SnapshotVisitor& state, const std::vector<Index>& points) override {
-    if (!state.loads()) return visit([&](Subdomains& subdomains) { subdomains.persist(state, points); });
-    make(points);
-    body_.problem.ranks->run_collectively(
-        [&] { visit([&](Subdomains& subdomains) { subdomains.persist_made(state); }); });
+    const auto persist_made = [&] { visit([&](Subdomains& subdomains) { subdomains.persist_made(state); }); };
+    if (!state.loads()) return persist_made();
+    make(points);  // with as many layers: their number follows from the points and the operator
+    body_.problem.ranks->run_collectively(persist_made);
   }
   void report() const override {
     visit([](const Subdomains& subdomains) { subdomains.report(); });
-  }
-  void observe(const ContactObserver& observer) override {
-    observer_ = observer;
-    visit([&](Subdomains& subdomains) { subdomains.observe(observer); });
-  }
-  [[nodiscard]] double contact_seconds() const override {
-    double sum = 0.0;
-    for (const Root& root : roots_) sum += root.subdomains->earlier_seconds();
-    visit([&](const Subdomains& subdomains) { sum += subdomains.contact_seconds(); });
-    return sum;
-  }
-  [[nodiscard]] std::size_t factor_entries() const override {
-    std::size_t sum = 0;
-    visit([&](const Subdomains& subdomains) { sum += subdomains.factor_entries(); });
-    return sum;
   }
 
  private:
@@ -71,12 +56,11 @@ class GatheredSubdomains final : public ContactRegion {
   void choose_roots(std::size_t subdomain_count);
 
   DistributedRegion body_;
-  bool all_points_;
+  SharedContact& shared_;
   std::vector<Root> roots_;
   std::size_t active_ = 0;     ///< roots with subdomains
   std::vector<Index> points_;  ///< of this rank
   std::vector<Index> nodes_;   ///< of this rank, near the points of all ranks
-  ContactObserver observer_;
 };
 
 /// Chooses the roots of so many subdomains.
@@ -85,7 +69,7 @@ void GatheredSubdomains::choose_roots(std::size_t subdomain_count) {
   active_ = std::min({subdomain_count, ranks, max_roots});
   while (roots_.size() < active_) {
     auto contact = std::make_unique<GatheredContact>(body_.problem, roots_.size());
-    auto at_root = std::make_unique<RootSubdomains>(body_, all_points_, *contact, nullptr);
+    auto at_root = std::make_unique<RootSubdomains>(body_, shared_, *contact, nullptr);
     roots_.push_back({std::move(contact), std::move(at_root)});
   }
 }
@@ -110,7 +94,6 @@ void GatheredSubdomains::make(const std::vector<Index>& points) {
     }
   });
   nodes_ = std::move(region.nodes);
-  observe(observer_);
 }
 
 void GatheredSubdomains::solve(const LinearStage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
@@ -140,10 +123,10 @@ void GatheredSubdomains::find_motion(const ContactRows&, const StageSolution& so
 std::unique_ptr<ContactRegion> make_gathered_subdomains(const SemidiscreteProblem& problem,
                                                         const OperatorCoefficients& coefficients,
                                                         const std::vector<char>& solved, const StageProduct& product,
-                                                        ContactNeighbourhood& neighbourhood, bool all_points,
+                                                        ContactNeighbourhood& neighbourhood, SharedContact& shared,
                                                         GatheredContact& contact, FactoredStage* condensed_stage) {
   return std::make_unique<GatheredSubdomains>(DistributedRegion{problem, coefficients, solved, product, neighbourhood},
-                                              all_points, contact, condensed_stage);
+                                              shared, contact, condensed_stage);
 }
 
 }  // namespace ricochet

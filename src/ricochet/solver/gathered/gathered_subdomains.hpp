@@ -19,7 +19,7 @@ class FactoredStage;
 /// references to everything except the coefficients.
 [[nodiscard]] std::unique_ptr<ContactRegion> make_gathered_subdomains(
     const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const std::vector<char>& solved,
-    const StageProduct& product, ContactNeighbourhood& neighbourhood, bool all_points, GatheredContact& contact,
+    const StageProduct& product, ContactNeighbourhood& neighbourhood, SharedContact& shared, GatheredContact& contact,
     FactoredStage* condensed_stage);
 
 }  // namespace ricochet

@@ -6,11 +6,6 @@
 
 namespace ricochet {
 
-void RootSubdomains::clear() {
-  if (subdomains_) earlier_seconds_ += subdomains_->contact_seconds();
-  subdomains_.reset();
-}
-
 std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& points) const {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> sent(static_cast<std::size_t>(ranks.size()));
@@ -69,7 +64,7 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
   region_product_ = StageProduct(matrix, d);
   region_neighbourhood_ = std::make_unique<ContactNeighbourhood>(*root_problem_, std::move(graph));
   subdomains_ = std::make_unique<Subdomains>(*root_problem_, body_.coefficients, region_solved_, region_product_,
-                                             *region_neighbourhood_, all_points_, condensed_stage_);
+                                             *region_neighbourhood_, shared_, condensed_stage_);
   subdomains_->set_layers(region.layers);
 }
 

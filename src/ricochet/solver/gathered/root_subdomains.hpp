@@ -34,9 +34,9 @@ struct RegionNodes {
 class RootSubdomains {
  public:
   /// `condensed_stage` is at the root, on `contact.nodes()`. Keeps references to all arguments.
-  RootSubdomains(const DistributedRegion& body, bool all_points, GatheredContact& contact,
+  RootSubdomains(const DistributedRegion& body, SharedContact& shared, GatheredContact& contact,
                  FactoredStage* condensed_stage)
-      : body_(body), all_points_(all_points), contact_(contact), condensed_stage_(condensed_stage) {}
+      : body_(body), shared_(shared), contact_(contact), condensed_stage_(condensed_stage) {}
 
   /// Gathers these points of each rank, and the body near them, at the root.
   void gather_body(const std::vector<Index>& points, const RegionNodes& region);
@@ -44,7 +44,7 @@ class RootSubdomains {
   std::size_t partition_on_root();
   /// Makes a share of the subdomains: every `count`-th one from `number` on.
   void make_on_root(std::size_t number, std::size_t count);
-  void clear();
+  void clear() { subdomains_.reset(); }
 
   /// Gather the stage and the residual at the root, solve there, and add motion and reactions to the values on the
   /// ranks.
@@ -57,8 +57,6 @@ class RootSubdomains {
   [[nodiscard]] const GatheredContact& contact() const { return contact_; }
   /// Subdomains; null elsewhere.
   [[nodiscard]] Subdomains* subdomains() const { return subdomains_.get(); }
-  /// Time spent in contact solvers of earlier subdomains.
-  [[nodiscard]] double earlier_seconds() const { return earlier_seconds_; }
 
  private:
   [[nodiscard]] MatrixGraph gather_graph(const std::vector<Index>& nodes);
@@ -66,10 +64,9 @@ class RootSubdomains {
   void widen_rows();
 
   DistributedRegion body_;
-  bool all_points_;
+  SharedContact& shared_;
   GatheredContact& contact_;
   FactoredStage* condensed_stage_;
-  double earlier_seconds_ = 0.0;
   GatheredNodes nodes_;
   Vector correction_, contact_motion_;  ///< per dof; zero between calls
   // At the root:

@@ -51,11 +51,11 @@ double least_end_weight(double lambda, double ratio) {
 
 }  // namespace
 
-void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_offset, ReactionMean mean) {
+void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_offset, ActingReaction mean) {
   u_ = std::move(u);
   z_ = std::move(z);
   mu_ = 1.0;
-  if (mean == ReactionMean::end) return;
+  if (mean == ActingReaction::end) return;
   normal_rows_.assign(row_offset.begin(), row_offset.end() - 1);
   has_friction_ = row_offset.back() > static_cast<Index>(normal_rows_.size());
   normal_u_ = u_(normal_rows_, normal_rows_);
@@ -70,7 +70,7 @@ void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_off
   usable_ = std::isfinite(lambda);
   if (!usable_) return;
   path_.prepare(u_, row_offset, !is_dependent_);
-  mu_ = mean == ReactionMean::path ? 0.0 : least_end_weight(lambda, has_friction_ ? 0.0 : 0.5);
+  mu_ = mean == ActingReaction::path_mean ? 0.0 : least_end_weight(lambda, has_friction_ ? 0.0 : 0.5);
 }
 
 void MeanReaction::set_end_reaction(const Vector& reaction) {

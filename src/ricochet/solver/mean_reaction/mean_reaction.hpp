@@ -21,7 +21,7 @@ namespace ricochet {
 class MeanReaction {
  public:
   /// Sets U and Z for candidates with these rows, and determines θ.
-  void prepare(Matrix u, Matrix z, const std::vector<Index>& row_offset, ReactionMean mean);
+  void prepare(Matrix u, Matrix z, const std::vector<Index>& row_offset, ActingReaction mean);
   [[nodiscard]] double theta() const { return 0.5 * (1.0 + mu_); }
   /// Returns U + θ Z.
   [[nodiscard]] Matrix combined(double theta) const { return u_ + theta * z_; }

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/stage/shared_contact.hpp"
 #include "ricochet/solver/stage/solver_options.hpp"
 #include "ricochet/step/stage.hpp"
 
@@ -23,11 +23,8 @@ class StageSolver {
   virtual void show_contact() const = 0;
   /// Refactorizes as StepSolver does.
   virtual void refactorize(const Vector& displacement) = 0;
-  virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Saves and loads as StepSolver does.
   virtual void persist(const SnapshotVisitor& visit) = 0;
-  [[nodiscard]] virtual double contact_seconds() const = 0;
-  [[nodiscard]] virtual std::size_t factor_entries() const = 0;
   [[nodiscard]] virtual IterationCounts iteration_counts() const { return {}; }
   /// Factor of the whole operator, if there is one, for later stages with massless contact nodes.
   [[nodiscard]] virtual FactoredStage* factored() { return nullptr; }

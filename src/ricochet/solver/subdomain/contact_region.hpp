@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/step/stage.hpp"
 
 /// @file Part of a stage solved by iterations that is solved directly: the body near its contact.
@@ -30,9 +29,6 @@ class ContactRegion {
   /// Saves and loads the subdomains of these points; loading makes them.
   virtual void persist(const SnapshotVisitor& visit, const std::vector<Index>& points) = 0;
   virtual void report() const = 0;
-  virtual void observe(const ContactObserver& observer) = 0;
-  [[nodiscard]] virtual double contact_seconds() const = 0;
-  [[nodiscard]] virtual std::size_t factor_entries() const = 0;
 };
 
 }  // namespace ricochet

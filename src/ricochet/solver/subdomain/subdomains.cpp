@@ -7,6 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/stage/stage_operator.hpp"
 #include "ricochet/solver/subdomain/contact_clusters.hpp"
 
@@ -25,26 +26,79 @@ double dense_work(const std::vector<Subdomain::Extent>& extents) {
   return sum;
 }
 
+std::vector<int> solved_dofs_of(const std::vector<Index>& nodes, const std::vector<char>& solved, int d) {
+  std::vector<int> dofs;
+  for (const Index node : nodes) {
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
+      if (solved[static_cast<std::size_t>(dof)] != 0) dofs.push_back(static_cast<int>(dof));
+    }
+  }
+  return dofs;
+}
+
+/// Analyses A on the dofs of the subdomain that are solved for.
+SparseCholesky analyse_subdomain(const std::vector<Index>& nodes, const std::vector<char>& solved, int d,
+                                 const StageProduct& product) {
+  std::vector<int> number(nodes.size() * static_cast<std::size_t>(d), -1);
+  int count = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const Index dof = nodes[i / static_cast<std::size_t>(d)] * d + static_cast<Index>(i) % d;
+    if (solved[static_cast<std::size_t>(dof)] != 0) number[i] = count++;
+  }
+  SparseCholesky factor;
+  factor.analyse(extract(product.principal(nodes), number, count, number, count));
+  return factor;
+}
+
 }  // namespace
+
+Subdomain::Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                     const std::vector<char>& solved, const Extent& extent, const StageProduct& product,
+                     SharedContact& shared, FactoredStage* condensed_stage)
+    : has_(static_cast<std::size_t>(problem.contact.size()), 0), own_points_(extent.own_points) {
+  for (const Index point : extent.points) has_[static_cast<std::size_t>(point)] = 1;
+  own_dofs_ = solved_dofs_of(extent.own_nodes, solved, problem.dimension);
+  // A principal block of a positive definite matrix is positive definite; if A is not, conjugate gradients report it,
+  // too.
+  stage_ = std::make_unique<FactoredStage>(
+      problem, coefficients, solved_dofs_of(extent.nodes, solved, problem.dimension),
+      analyse_subdomain(extent.nodes, solved, problem.dimension, product), shared, condensed_stage);
+}
+
+void Subdomain::choose_points(const std::vector<char>& eligible, std::vector<char>& own) const {
+  for (std::size_t i = 0; i < has_.size(); ++i) own[i] = has_[i] != 0 ? eligible[i] : char{0};
+}
+
+void Subdomain::solve(const LinearStage& stage, const Vector& residual, Vector& correction, Vector& x,
+                      StageSolution& solution) {
+  stage_->solve(stage, residual, solution, correction);
+  for (const int dof : own_dofs_) x[dof] += correction[dof];
+  for (const int dof : stage_->dofs()) correction[dof] = 0.0;
+}
+
+void Subdomain::restrict_to_own(const StageSolution& local, StageSolution& solution) const {
+  const Index tangents = solution.tangential_reaction.size() / std::max<Index>(1, solution.normal_reaction.size());
+  for (const Index point : own_points_) {
+    solution.normal_reaction[point] = local.normal_reaction[point];
+    solution.tangential_reaction.segment(point * tangents, tangents) =
+        local.tangential_reaction.segment(point * tangents, tangents);
+    solution.contact_status[static_cast<std::size_t>(point)] = local.contact_status[static_cast<std::size_t>(point)];
+  }
+}
 
 Subdomains::Subdomains(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                        const std::vector<char>& solved, const StageProduct& product,
-                       ContactNeighbourhood& neighbourhood, bool all_points, FactoredStage* condensed_stage)
+                       ContactNeighbourhood& neighbourhood, SharedContact& shared, FactoredStage* condensed_stage)
     : problem_(problem),
       coefficients_(coefficients),
       solved_(solved),
       product_(product),
       neighbourhood_(neighbourhood),
-      all_points_(all_points),
+      shared_(shared),
       condensed_stage_(condensed_stage) {
   correction_.setZero(problem.dof_count());
   if (condensed_stage != nullptr)
     massless_nodes_ = std::make_unique<MasslessContactNodes>(problem, coefficients, *condensed_stage);
-}
-
-void Subdomains::clear() {
-  earlier_contact_seconds_ = contact_seconds();
-  subdomains_.clear();
 }
 
 /// Returns clusters of at most so many points with the layers around them, as subdomains.
@@ -96,11 +150,9 @@ std::size_t Subdomains::partition(const std::vector<Index>& points) {
 }
 
 void Subdomains::make_share(std::size_t number, std::size_t count) {
-  for (std::size_t i = number; i < extents_.size(); i += count) {
-    subdomains_.push_back(std::make_unique<Subdomain>(problem_, coefficients_, solved_, extents_[i], product_,
-                                                      all_points_, condensed_stage_));
-    subdomains_.back()->observe(observer_);
-  }
+  for (std::size_t i = number; i < extents_.size(); i += count)
+    subdomains_.push_back(std::make_unique<Subdomain>(problem_, coefficients_, solved_, extents_[i], product_, shared_,
+                                                      condensed_stage_));
   extents_.clear();
 }
 
@@ -141,23 +193,6 @@ void Subdomains::persist_made(const SnapshotVisitor& visit) {
 
 void Subdomains::report() const {
   for (const auto& subdomain : subdomains_) subdomain->report();
-}
-
-void Subdomains::observe(const ContactObserver& observer) {
-  observer_ = observer;
-  for (const auto& subdomain : subdomains_) subdomain->observe(observer);
-}
-
-double Subdomains::contact_seconds() const {
-  double sum = earlier_contact_seconds_;
-  for (const auto& subdomain : subdomains_) sum += subdomain->contact_seconds();
-  return sum;
-}
-
-std::size_t Subdomains::factor_entries() const {
-  std::size_t sum = 0;
-  for (const auto& subdomain : subdomains_) sum += subdomain->factor_entries();
-  return sum;
 }
 
 }  // namespace ricochet

@@ -16,12 +16,6 @@
 namespace ricochet::test_support {
 namespace {
 
-/// Number of random cases, multiplied by RICOCHET_RANDOM_CASES.
-unsigned samples(unsigned count) {
-  const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
-  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : seeds(count);
-}
-
 /// An elastic system and the conditions on it.
 struct Constrained {
   Matrix stiffness;  ///< A
