@@ -235,6 +235,10 @@ class CommandLine(TestCase):
         case.write_text(text.replace("t=0)", "t=1e9)"), encoding="utf-8")
         process = self.expect_status(2, run("validate", case))
         self.assertRegex(process.stderr, r"named\.toml:\d+:\d+: the time 1e\+09 is outside the run, which extends from 0 to ")
+        for wrong, meant in (("impacts.0.restituton", "impacts.0.restitution"), ("probe.0.node", "probes.0.node")):
+            case.write_text(text.replace("history.total_energy(t=0)", f"summary.{wrong}"), encoding="utf-8")
+            self.assertIn(f'named.toml:{text[:text.index("quantity")].count(chr(10)) + 1}:12: summary.json has no entry "{wrong}"; did you mean "{meant}"?',
+                          self.expect_status(2, run("run", case, "-o", self.folder / "no")).stderr)
 
     def test_streams(self):
         output = self.folder / "out"
