@@ -15,6 +15,9 @@ def step(found):
 # A message of a case with settings, in the words of the sources except for groups, which stand for numbers, and the
 # settings to apply, one after the other; a text is appended to the case.
 TRIED = [
+    (r'set solver.preconditioner = "block-jacobi", or "auto" with solver.method = "direct"', BLOCK,
+     {"solver.method": "iterative", "solver.preconditioner": "gamg"},
+     [{"solver.preconditioner": "block-jacobi"}, {"solver.preconditioner": "auto", "solver.method": "direct"}]),
     (r'set mass.type = "equivalent-lumped", or use scheme "newmark", which supports any mass', BLOCK,
      {**EXPLICIT, "mass.type": "consistent"}, [{"mass.type": "equivalent-lumped"}, NEWMARK]),
     (r'set material damping.stiffness = 0 \(damping.mass is supported\), or use scheme "reduced-kane"', BLOCK,
