@@ -322,7 +322,7 @@ class CommandLine(TestCase):
         self.assertRegex(process.stdout, rf"{re.escape(str(output))} +newmark +consistent")
         self.assertRegex(process.stdout, rf"{re.escape(str(other))} +midpoint +consistent")
         methods, outcomes = process.stdout.split("\n\n")
-        self.assertEqual(len(methods.splitlines()), 4)
+        self.assertEqual(len(methods.splitlines()), 7)  # two of the head, two runs, a legend, and the probe of each
         for directory, line in zip((output, other), outcomes.splitlines()[1:]):
             self.assertTrue(line.startswith(f"{directory} "), line)
         self.assertIn("dimension 3", self.expect_status(0, run("info", self.case, mesh)).stdout)
