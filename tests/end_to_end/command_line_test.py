@@ -20,6 +20,7 @@ class CommandLine(TestCase):
         for arguments, said in (((), "subcommand"),
                                 (("simulate", self.case), ""),
                                 (("block.toml",), "a command is missing: write `ricochet run block.toml`"),
+                                (("runn", "block.toml"), 'there is no command "runn"; did you mean "run"?'),
                                 (("run",), "a case file is required"),
                                 (("info",), "path is required"),
                                 (("validate",), "case is required"),
