@@ -83,7 +83,7 @@ void print_methods(const std::vector<Run>& runs, int width) {
 }
 
 /// Marks and their meanings, in the order of their explanation.
-constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
+constexpr std::array<std::pair<const char*, const char*>, 7> meanings{{
     {"≥", "not every step was evaluated: the stress may have been higher in between (output.fields_every)"},
     {"~", "the contact zone is too coarse for a reliable force: refine the mesh there"},
     {"?",
@@ -95,6 +95,9 @@ constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"!",
      "the method itself lost or created more than a tenth of the energy loss that this restitution implies: use a "
      "smaller time.step and smaller cells"},
+    {"±",
+     "negative or above 1: the body left while it still moved inward, or with energy of deformation or rotation; it "
+     "may touch again"},
     {"*", "of the first impact with a restitution; there are more, which `ricochet info` of the run alone lists"},
 }};
 
@@ -109,7 +112,7 @@ class ResultCells {
     if (first == s_.impacts.end()) return "-";
     const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
     return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", rotated_too_far_in(first)) +
-           mark("!", restitution_error(*first).is_large);
+           mark("!", restitution_error(*first).is_large) + mark("±", !restitution_doubt(*first).empty());
   }
 
   /// Returns the largest force of a body on an obstacle; "-" if the results contain no impacts.

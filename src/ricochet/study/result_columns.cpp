@@ -105,6 +105,8 @@ const std::vector<ResultColumn>& all_columns() {
 std::string doubts_of(const RunSummary& s) {
   std::vector<std::string> doubts;
   if (const auto first = first_with_restitution(s.impacts); first != s.impacts.end()) {
+    if (!restitution_doubt(*first).empty())
+      doubts.emplace_back(*first->restitution() < 0.0 ? "restitution: negative" : "restitution: above 1");
     if (restitution_error(*first).is_large) doubts.emplace_back("restitution: inexact");
     if (is_strained(s, first)) doubts.emplace_back("restitution: cells turned");
     if (is_distorted_by_rotation(*first)) doubts.emplace_back("restitution: the body turned");
