@@ -136,6 +136,7 @@ int validate(const ValidateArguments& arguments) {
   const Case& input = session.input();
   warn_of_end(input.time);
   if (const std::vector<std::string> files = files_without_mesh(input, arguments); !files.empty()) {
+    check_without_mesh(input);
     print_valid_without(files, arguments);
     return 0;
   }

@@ -19,18 +19,25 @@ struct Run {
   RunSummary summary;
 };
 
-/// Returns the variation of the force at the first probe on a contact boundary; if there is none, of the resultant in
-/// its largest direction.
+/// Returns the total variation of the component of a resultant contact force that varies most.
 double force_variation(const RunSummary& s) {
-  const auto probe =
-      std::find_if(s.probes.begin(), s.probes.end(), [](const auto& each) { return each.probe.contact_node >= 0; });
-  if (probe != s.probes.end()) return s.digest(probe->probe.name + ".reaction_normal").total_variation;
   double variation = 0.0;
   for (const std::string& column : s.columns) {
     if (column.starts_with("contact_force_") || column.starts_with("pair_force."))
       variation = std::max(variation, s.digest(column).total_variation);
   }
   return variation;
+}
+
+/// Returns the variation of the normal reaction at each probe on a contact boundary, or "".
+std::string probe_variations(const RunSummary& s, const char* sign) {
+  std::vector<std::string> texts;
+  for (const auto& [probe, position] : s.probes) {
+    if (probe.contact_node < 0) continue;
+    const std::string column = probe.name + ".reaction_normal";
+    texts.push_back(fmt::format("{} {}{:.4g}", column, sign, s.digest(column).total_variation));
+  }
+  return texts.empty() ? "" : fmt::format("variation of {}", fmt::join(texts, ", "));
 }
 
 void print_methods(const std::vector<Run>& runs, int width) {
@@ -41,16 +48,22 @@ void print_methods(const std::vector<Run>& runs, int width) {
              "variation of", "deepest inter-", "time per");
   fmt::print(row, "", width, "", scheme_width, "", "the start", "the end", "energy", "the method", "contact force",
              "penetration", "step, ms");
-  bool any_skips = false;
+  bool any_skips = false, any_force = false;
   for (const auto& [directory, s] : runs) {
     const ColumnDigest energy = s.digest("total_energy");
     const bool skips = s.history_every > 1;
     any_skips = any_skips || skips;
+    any_force = any_force || force_variation(s) > 0.0;
     fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>11} {:>14} {:>14} {:>9.3g}{}\n", directory, width,
                s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum, method_energy_mark(s),
                fmt::format("{}{:.4g}", skips ? "≥ " : "", force_variation(s)), deepest_penetration_text(s),
                1e3 * s.time_per_step, status_text(directory, s));
   }
+  if (any_force)
+    fmt::print(
+        "  variation of contact force: the total variation of contact_force_* or pair_force.*, whichever varies most, "
+        "in "
+        "the unit of force of the case (in plane cases per thickness)\n");
   if (any_skips)
     fmt::print(
         "  ≥ the history has no row for some steps: a force that alternates from step to step varies more "
@@ -59,12 +72,14 @@ void print_methods(const std::vector<Run>& runs, int width) {
     std::vector<std::string> notes;
     if (s.mass_built != s.mass) notes.push_back("mass " + s.mass_text());
     if (const std::string reactions = reactions_text(s); !reactions.empty()) notes.push_back("reactions: " + reactions);
+    if (const std::string probes = probe_variations(s, s.history_every > 1 ? "≥ " : ""); !probes.empty())
+      notes.push_back(probes);
     if (!notes.empty()) fmt::print("  {}: {}\n", directory, fmt::join(notes, "; "));
   }
 }
 
 /// Marks and their meanings, in the order of their explanation.
-constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
+constexpr std::array<std::pair<const char*, const char*>, 7> meanings{{
     {"≥", "not every step was evaluated: the stress may have been higher in between (output.fields_every)"},
     {"~", "the contact zone is too coarse for a reliable force: refine the mesh there"},
     {"?",
@@ -76,6 +91,9 @@ constexpr std::array<std::pair<const char*, const char*>, 6> meanings{{
     {"!",
      "the method itself lost or created more than a tenth of the energy loss that this restitution implies: use a "
      "smaller time.step and smaller cells"},
+    {"±",
+     "negative or above 1: the body left while it still moved inward, or with energy of deformation or rotation; it "
+     "may touch again"},
     {"*", "of the first impact with a restitution; there are more, which `ricochet info` of the run alone lists"},
 }};
 
@@ -89,7 +107,7 @@ class ResultCells {
     if (first == nullptr) return "-";
     const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
     return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", rotated_too_far_in(*first)) +
-           mark("!", restitution_error(*first).is_large);
+           mark("!", restitution_error(*first).is_large) + mark("±", !restitution_doubt(*first).empty());
   }
 
   /// Returns the largest force of a body on an obstacle; "-" if the results contain no impacts.

@@ -171,16 +171,6 @@ bool handle_internal_command(const CLI::App& app, int argc, char** argv) {
   return true;
 }
 
-/// Refuses a case file in place of a command.
-void refuse_case_without_command(int argc, char** argv) {
-  const std::string_view word = argc > 1 ? argv[1] : "";
-  if (word.starts_with('-') || !word.ends_with(".toml")) return;
-  throw Error(ErrorKind::usage,
-              fmt::format("a command is missing: write `ricochet run {0}`, or one of the commands that "
-                          "`ricochet --help` lists",
-                          word));
-}
-
 int dispatch(int argc, char** argv) {
   CLI::App app{
       "Ricochet simulates elastic bodies that strike, rest on, slide along and leave each other and rigid obstacles."};
@@ -289,7 +279,7 @@ int dispatch(int argc, char** argv) {
 
   if (handle_internal_command(app, argc, argv)) return 0;
   program::refuse_empty_values(app);
-  refuse_case_without_command(argc, argv);
+  program::refuse_unknown_command(app, argc > 1 ? argv[1] : "");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -30,5 +32,8 @@ void flush_standard_output();
 /// Makes an empty value on the command line, as from an unset variable of the shell, a usage error: it must not stand
 /// for the default. Titles and labels may be empty.
 void refuse_empty_values(CLI::App& app);
+
+/// Refuses a first word that is neither an option nor a command: a case file, or a command that is misspelt.
+void refuse_unknown_command(CLI::App& app, const std::string& word);
 
 }  // namespace ricochet::program

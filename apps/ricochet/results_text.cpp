@@ -155,9 +155,8 @@ bool is_radial(const Impact& impact, const RunSummary& summary) {
 std::string collision_text(const Impact& impact) {
   std::string text;
   if (const auto restitution = impact.restitution()) {
-    const char* const inward = impact.other ? " (their centres still approach each other after the last force)"
-                                            : " (its centre still approaches the obstacle after the last force)";
-    text = fmt::format(", restitution {:.4g}{}{}{}", *restitution, *restitution < 0.0 ? inward : "",
+    const std::string doubt = restitution_doubt(impact);
+    text = fmt::format(", restitution {:.4g}{}{}{}", *restitution, doubt.empty() ? "" : " (" + doubt + ")",
                        restitution_error_text(impact), rotational_text(impact));
   } else if (impact.ended) {
     text = fmt::format(", no restitution ({})", why_no_restitution(impact));

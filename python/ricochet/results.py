@@ -38,6 +38,13 @@ class Maximum(NamedTuple):
     among: str
 
 
+class Entries(dict):
+    """Entries of summary.json; the KeyError for an unknown one lists similar names."""
+
+    def __missing__(self, name):
+        raise unknown_name("entry", name, self)
+
+
 class History(Mapping):
     """Columns of a run's history, and of its probes that have rows of their own, as numpy arrays without copies."""
 
@@ -166,7 +173,7 @@ class Run:
     def reload(self):
         """Reads the results of a run in progress again. Arrays obtained before do not change. Returns this run."""
         self._data = _core.read_run(self.directory)
-        self.summary = json.loads(self._data.summary_json)
+        self.summary = json.loads(self._data.summary_json, object_hook=Entries)
         self.history = History(self._data)
         return self
 

@@ -94,6 +94,10 @@ def test_answers(run):
     force = run.maximum("contact_force_y")
     assert force.value == run.history["contact_force_y"].max() and force.place is None
     assert 0.9 < run.impacts[0]["restitution"] < 1.0
+    for entries, misspelt, meant in ((run.impacts[0], "restituton", "restitution"), (run.summary, "stepss", "steps")):
+        with pytest.raises(KeyError, match=f'there is no entry "{misspelt}"; choose from .*{meant}'):
+            entries[misspelt]
+    assert run.summary.get("stepss") is None and "stepss" not in run.summary
     with pytest.raises(KeyError, match='no field or column of the history "nothing"'):
         run.maximum("nothing")
     with pytest.raises(KeyError, match="no field or column .*choose from von_mises"):

@@ -20,6 +20,7 @@ class CommandLine(TestCase):
         for arguments, said in (((), "subcommand"),
                                 (("simulate", self.case), ""),
                                 (("block.toml",), "a command is missing: write `ricochet run block.toml`"),
+                                (("runn", "block.toml"), 'there is no command "runn"; did you mean "run"?'),
                                 (("run",), "a case file is required"),
                                 (("info",), "path is required"),
                                 (("validate",), "case is required"),
@@ -235,6 +236,10 @@ class CommandLine(TestCase):
         case.write_text(text.replace("t=0)", "t=1e9)"), encoding="utf-8")
         process = self.expect_status(2, run("validate", case))
         self.assertRegex(process.stderr, r"named\.toml:\d+:\d+: the time 1e\+09 is outside the run, which extends from 0 to ")
+        for wrong, meant in (("impacts.0.restituton", "impacts.0.restitution"), ("probe.0.node", "probes.0.node")):
+            case.write_text(text.replace("history.total_energy(t=0)", f"summary.{wrong}"), encoding="utf-8")
+            self.assertIn(f'named.toml:{text[:text.index("quantity")].count(chr(10)) + 1}:12: summary.json has no entry "{wrong}"; did you mean "{meant}"?',
+                          self.expect_status(2, run("run", case, "-o", self.folder / "no")).stderr)
 
     def test_streams(self):
         output = self.folder / "out"
@@ -318,7 +323,7 @@ class CommandLine(TestCase):
         self.assertRegex(process.stdout, rf"{re.escape(str(output))} +newmark +consistent")
         self.assertRegex(process.stdout, rf"{re.escape(str(other))} +midpoint +consistent")
         methods, outcomes = process.stdout.split("\n\n")
-        self.assertEqual(len(methods.splitlines()), 4)
+        self.assertEqual(len(methods.splitlines()), 7)  # two of the head, two runs, a legend, and the probe of each
         for directory, line in zip((output, other), outcomes.splitlines()[1:]):
             self.assertTrue(line.startswith(f"{directory} "), line)
         self.assertIn("dimension 3", self.expect_status(0, run("info", self.case, mesh)).stdout)

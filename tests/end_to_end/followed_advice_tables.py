@@ -15,6 +15,9 @@ def step(found):
 # A message of a case with settings, in the words of the sources except for groups, which stand for numbers, and the
 # settings to apply, one after the other; a text is appended to the case.
 TRIED = [
+    (r'set solver.preconditioner = "block-jacobi", or "auto" with solver.method = "direct"', BLOCK,
+     {"solver.method": "iterative", "solver.preconditioner": "gamg"},
+     [{"solver.preconditioner": "block-jacobi"}, {"solver.preconditioner": "auto", "solver.method": "direct"}]),
     (r'set mass.type = "equivalent-lumped", or use scheme "newmark", which supports any mass', BLOCK,
      {**EXPLICIT, "mass.type": "consistent"}, [{"mass.type": "equivalent-lumped"}, NEWMARK]),
     (r'set material damping.stiffness = 0 \(damping.mass is supported\), or use scheme "reduced-kane"', BLOCK,
@@ -167,6 +170,8 @@ TRIED = [
 ]
 # For messages that only a run issues.
 TRIED_BY_RUNS = [
+    (r'at the start the body is \S+ \(\S+ of its size\) inside .* check on which side of the obstacle the body is \(the normal of a plane points out',
+     LONG.replace("long.msh", "strip.msh"), {"obstacle.floor.normal": "[0.0, -1.0]"}, [{"obstacle.floor.normal": "[0.0, 1.0]"}]),
     (r'use law = "neo-hookean" in \[\[material\]\], which holds for any rotation', SPINNING, {}, [{"material.0.law": "neo-hookean"}]),
     (r'set a smaller time.smallest or a larger time.tolerance', BLOCK, {**KANE, **ADAPTIVE},
      [{"time.smallest": 1e-5}, {"time.tolerance": 1e-2}]),

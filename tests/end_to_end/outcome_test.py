@@ -6,7 +6,8 @@ import re
 import h5py
 import numpy
 
-from harness import DISC, SOURCE, SPINNING, History, TestCase, block_case, run, settings, summary_of, with_more
+from harness import DISC, SOURCE, SPINNING, History, TestCase, block_case, body_case, run, settings, summary_of, with_more
+from two_bodies_test import strip
 
 # The puck of the first case strikes a wall once and leaves.
 PUCK = SOURCE / "cases" / "puck" / "puck.toml"
@@ -221,6 +222,23 @@ end = 0.001
         said = [self.expect_status(0, run("info", folder)).stdout for folder in (every, sampled)]
         self.assertIn(f"largest von Mises stress {peak['von_mises']:.6g} at", said[0])
         self.assertIn(f"largest von Mises stress ≥ {few['von_mises']:.6g} at", said[1])
+
+    def test_a_block_that_springs_off_is_doubted(self):
+        """It lands compressed, and leaves with its elastic energy, too: faster than it came."""
+        self.write("strip.msh", strip(8, 4, 0.5))
+        text = body_case("strip.msh", [0.0, -0.001], [0.0, 1.0], '[initial]\nvelocity = [0.0, -0.1]\ndisplacement = ["0", "-0.02*y"]\n',
+                         mass="equivalent", scheme="reduced-kane", step=1e-3, end=0.4)
+        case = self.write("case.toml", text)
+        folder = self.simulate(case)
+        restitution = summary_of(folder)["impacts"][0]["restitution"]
+        self.assertGreater(restitution, 1.1)
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn(f"restitution {restitution:.4g} (above 1: energy of deformation or rotation has become that of the rebound)", said)
+        compared = self.expect_status(0, run("info", folder, folder)).stdout
+        self.assertIn(f" {restitution:.4g}± ", compared)
+        self.assertIn("  ± negative or above 1: ", compared)
+        self.expect_status(0, run("study", case, "--vary", "time.step=1e-3,2e-3", "-o", self.folder / "study", "--quiet"))
+        self.assertEqual((self.folder / "study" / "study.csv").read_text().count("restitution: above 1"), 2)
 
     def test_several_runs_are_compared(self):
         """In the second table, a mark stands exactly at the numbers that cannot be trusted."""

@@ -3,7 +3,7 @@
 import meshio
 import numpy
 
-from harness import DISC, MESHES, SOURCE, History, TestCase, block_case, run, summary_of, with_more
+from harness import DISC, MESHES, SOURCE, History, TestCase, block_case, run, summary_of, total_variation, with_more
 
 DISC_PROBES = """
 [[probe]]
@@ -49,6 +49,23 @@ def vector(history, name, axes="xy"):
 
 
 class Probes(TestCase):
+    def test_the_order_of_probes_does_not_matter_to_a_comparison(self):
+        """The variation of the contact force is that of the resultant; that of a probe stands under its name."""
+        probes = ['[[probe]]\nname = "low"\nat = [0.0, 0.0]\n', '[[probe]]\nname = "high"\nat = [0.1, 1.0]\n']
+        runs = [self.simulate(self.write("case.toml", block_case().split("[[probe]]")[0].replace('group = "bottom"', 'group = "boundary"')
+                                         + "".join(order)), name) for name, order in (("a", probes), ("b", probes[::-1]), ("c", []))]
+        said = self.expect_status(0, run("info", *runs)).stdout
+        history = History(runs[0] / "history.csv")
+        variation = max(total_variation(history[f"contact_force_{axis}"]) for axis in "xy")
+        self.assertGreater(variation, 0.0)
+        rows = [next(line for line in said.splitlines() if line.startswith(f"{folder} ")).split() for folder in runs]
+        self.assertEqual([row[-3] for row in rows], [f"{variation:.4g}"] * 3)
+        self.assertIn("  variation of contact force: the total variation of contact_force_* or pair_force.*", said)
+        own = {name: f"{name}.reaction_normal {total_variation(history[f'{name}.reaction_normal']):.4g}" for name in ("low", "high")}
+        self.assertNotEqual(own["low"].split()[1], own["high"].split()[1])
+        self.assertIn(f"  {runs[0]}: variation of {own['low']}, {own['high']}\n", said)
+        self.assertIn(f"  {runs[1]}: variation of {own['high']}, {own['low']}\n", said)
+
     def test_a_disc_with_friction(self):
         case = self.write("disc.toml", with_more(DISC, DISC_PROBES))
         results = self.simulate(case, values={

@@ -41,11 +41,19 @@ class Refusals(ResumeTestCase):
         says = f"it ran with Ricochet {other}, this is {version}"
         process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn(says, process.stderr)
+        # Nothing else is said to differ, and nothing is to be restored.
+        self.assertIn("Continue it with the version that began it, start anew", process.stderr)
+        for word in ("the case has changed", "estore"):
+            self.assertNotIn(word, process.stderr)
         for checkpoint in checkpoints(output):
             checkpoint.unlink()
         (output / "summary.json").write_text((output / "summary.json").read_text().replace(version, other))
         process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn(says, process.stderr)
+        process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values | {"output.history_every": 3})))
+        for words in (says + "; the case has changed since this run began:\n", "output.history_every was ",
+                      "Continue it with the version that began it and restore the case (including --set), start anew"):
+            self.assertIn(words, process.stderr)
 
     def test_refuses_another_mesh(self):
         mesh = self.folder / "block.msh"

@@ -190,6 +190,15 @@ class SemanticErrors(TestCase):
         self.refuse(self.axisymmetric('[[motion]]\ngroup = "body"\nspin = 2.0\n'), "2.0\n", "cannot rotate")
         self.refuse(self.axisymmetric().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.1, 0.2]"),
                     "[obstacle.floor]", '"floor" has the radial component 0.1')
+        free = self.axisymmetric().replace('type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]',
+                                           'type = "sphere"\ncentre = [0.0, -1.0]\nradius = 1.0\nmass = 1.0')
+        self.refuse(free, "[obstacle.floor]", "not in axisymmetric cases: mesh the body as a part")
+        # None of this needs a mesh.
+        geometry = self.write("section.geo", "")
+        for text, words in ((free, "not in axisymmetric cases"), (self.axisymmetric(drive="[load]\ngravity = [0.5, -1.0]\n"), "radial component 0.5"),
+                            (free.replace("mass = 1.0", "velocity = [0.1, 0.2]"), '"floor" has the radial component 0.1')):
+            case = self.write("case.toml", text.replace(str(self.folder / "section.msh"), str(geometry)))
+            self.assertIn(words, self.expect_status(2, run("validate", case)).stderr)
         pulled = self.write("case.toml", self.axisymmetric(support("bottom", '["x"]', '"0.1*t"')))
         self.assertIn("a node on the axis of an axisymmetric body cannot leave the axis",
                       self.expect_status(2, run("validate", pulled)).stderr)

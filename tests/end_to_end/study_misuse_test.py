@@ -138,6 +138,13 @@ class StudyMisuse(TestCase):
                 (("--quantity", "history.kinetic_enrgy[-1]"), 'did you mean "kinetic_energy"?'),
                 (("--exact", "history.top.displacement_z[-1]=1"), "no column"),
                 (("--quantity", "summary.stepss"), 'summary.json has no entry "stepss"; did you mean "steps"?'),
+                (("--quantity", "summary.impacts.0.restituton"), 'no entry "impacts.0.restituton"; did you mean "impacts.0.restitution"?'),
+                (("--exact", "summary.probe.0.position.0=1"), 'did you mean "probes.0.position.0"?'),
+                (("--quantity", "summary.contacts.0.grup"), 'did you mean "contacts.0.group"?'),
+                (("--quantity", "summary.impacts.restitution"), "specify the entry, counted from 0, as in summary.impacts.0.restitution"),
+                (("--quantity", "history.kinetic_energy(t=3)"), "the time 3 is outside the run, which extends from 0 to 0.02"),
+                (("--quantity", "max(history.kinetic_energy, 0.01, 0.03)"), "the time 0.03 is outside the run"),
+                (("--quantity", "history.kinetic_energy[11]"), "the row 11 is outside of history.csv, which has at most 11 rows"),
                 (("--reference", "finest", "--compare", "top.displacment"), 'did you mean "top.displacement')):
             errors = self.refused(1, said, "study", BAR, *vary, *question, *settings(SHORT), "-o", self.folder / "no")
             self.assertIn(question[-2], errors)

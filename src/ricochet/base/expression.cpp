@@ -14,8 +14,10 @@ namespace ricochet {
 
 namespace {
 
-/// Refuses "=", since muParser would read "t=3" as an assignment.
-void refuse_assignment(const std::string& text) {
+/// Refuses "=", since muParser would read "t=3" as an assignment, and "**", whose message would not name "^".
+void refuse_other_operators(const std::string& text) {
+  if (text.find("**") != std::string::npos)
+    throw Error(ErrorKind::invalid_input, fmt::format("in the expression \"{}\": powers are written with \"^\"", text));
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
     if (i + 1 < text.size() && text[i + 1] == '=') {
@@ -55,7 +57,7 @@ void Expression::Implementation::compile() {
       }
       parser.DefineConst(name, value);
     }
-    refuse_assignment(text);
+    refuse_other_operators(text);
     parser.SetExpr(text);
     for (const auto& [name, address] : parser.GetUsedVar()) {
       uses_time = uses_time || name == "t";

@@ -26,4 +26,8 @@ long step_count(const TimeSection& time) {
   return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 
+double run_end(const TimeSection& time) {
+  return time.adaptive ? time.end : static_cast<double>(step_count(time)) * time.step;
+}
+
 }  // namespace ricochet

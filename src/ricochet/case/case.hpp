@@ -163,6 +163,8 @@ struct TimeSection {
 
 /// Number of steps to the end time; the last step ends at or after it. Adaptive steps count as if all were the longest.
 [[nodiscard]] long step_count(const TimeSection& time);
+/// Returns the time at which a run ends, after a whole number of steps of a fixed length.
+[[nodiscard]] double run_end(const TimeSection& time);
 
 struct ProbeSection {
   std::string name;

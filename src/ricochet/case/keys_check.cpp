@@ -81,7 +81,8 @@ class TreeChecker {
   void check_known_of_type(const Section& section, const TypeKeys* type, const std::string& title,
                            const TomlNode& table);
   const TypeKeys* find_type_of(const Section& section, TomlNode& table);
-  void check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table);
+  void check_foreign_key(const Section& section, const TypeKeys* type, const Key& key, const std::string& title,
+                         TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
   [[nodiscard]] bool has_entries(const std::string& section) const;
   [[nodiscard]] bool is_replaced(const std::string& section) const;
@@ -233,7 +234,7 @@ void TreeChecker::check_entry(const Section& section, const std::string& title, 
     } else if (own != nullptr) {
       keys.push_back(*own);
     } else {
-      check_foreign_key(section, key, title, table);
+      check_foreign_key(section, type, key, title, table);
     }
   }
   check_known_of_type(section, type, title, table);
@@ -241,22 +242,24 @@ void TreeChecker::check_entry(const Section& section, const std::string& title, 
   if (type != nullptr) check_alternatives(type->alternatives, type->keys, title, table);
 }
 
-/// Checks a key that the entry's type does not have. If the type in the file was replaced by --set, the key is ignored;
-/// otherwise it is an error.
-void TreeChecker::check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table) {
+/// Checks a key that the entry's type does not have. If --set replaced the type in the file, the key is ignored;
+/// otherwise it is an error, also under the default type: without effect it would be believed to have one.
+void TreeChecker::check_foreign_key(const Section& section, const TypeKeys* type, const Key& key,
+                                    const std::string& title, TomlNode& table) {
   TomlNode* const value = table.find(key.name);
-  const TomlNode* const type = table.find(section.type_key);
   if (value == nullptr) return;
-  if (type == nullptr || type->is_refused) return check_key(key, title, *value);
-  if (type->is_override() && !value->is_override()) {
+  if (type == nullptr) return check_key(key, title, *value);
+  const TomlNode* const named = table.find(section.type_key);
+  if (named != nullptr && named->is_override() && !value->is_override()) {
     value->is_ignored = true;
     problems_.add_info(value->location,
-                       fmt::format("\"{}\" is ignored: the {} is \"{}\"", key.name, section.type_key, type->text));
+                       fmt::format("\"{}\" is ignored: the {} is \"{}\"", key.name, section.type_key, type->name));
     return;
   }
   value->is_refused = true;
-  problems_.add(value->location, fmt::format("\"{}\" is for the {} only; the {} is \"{}\"", key.name,
-                                             types_text(section, key), section.type_key, type->text));
+  problems_.add(value->location,
+                fmt::format("\"{}\" is for the {} only; the {} is \"{}\"{}", key.name, types_text(section, key),
+                            section.type_key, type->name, named == nullptr ? ", the default" : ""));
 }
 
 void TreeChecker::check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {

@@ -38,14 +38,15 @@ std::string bare_word(const std::string& word) {
 }
 
 /// Returns the only choice that is a part of the word or contains it: "stress" for "plane stress", "neo-hookean" for
-/// "neohooke"; "" if there is none.
+/// "neohooke", "hht-alpha" for "hht"; "" if there is none.
 std::string overlapping_choice(const std::string& word, const std::vector<std::string>& choices) {
   constexpr std::size_t shortest = 4;
   const std::string bare = bare_word(word);
   std::string found;
   for (const std::string& choice : choices) {
     const std::string other = bare_word(choice);
-    const bool overlap = bare.size() < other.size() ? bare.size() >= shortest && other.find(bare) != std::string::npos
+    const std::size_t least = other.starts_with(bare) ? shortest - 1 : shortest;
+    const bool overlap = bare.size() < other.size() ? bare.size() >= least && other.find(bare) != std::string::npos
                                                     : other.size() >= shortest && bare.find(other) != std::string::npos;
     if (!overlap) continue;
     if (!found.empty()) return "";
@@ -60,6 +61,11 @@ std::string suggestion(const TomlNode& value, const std::vector<std::string>& ch
   std::string near = nearest_name(value.text, choices);
   if (near.empty()) near = overlapping_choice(value.text, choices);
   return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+}
+
+/// Returns a hint if the value is a number with a unit, or "".
+std::string unit_hint(const TomlNode& value) {
+  return value.kind == Kind::text && is_number_with_unit(value.text) ? units_are_not_written : "";
 }
 
 /// Returns whether pairs of entries are the two parts of numbers with a decimal comma, between which there is no blank:
@@ -125,7 +131,7 @@ void ValueCheck::check_number() {
   const std::string found = describe(value_);
   if (make_finite_number(value_) && is_within(key_.range, value_.real)) return;
   const bool is_finite = value_.kind != Kind::real || std::isfinite(value_.real);
-  refuse_as(admissible_with_unit(key_), found, is_finite ? "" : ", which is not finite");
+  refuse_as(admissible_with_unit(key_), found, is_finite ? unit_hint(value_) : ", which is not finite");
 }
 
 void ValueCheck::check_integer() {
@@ -147,8 +153,9 @@ void ValueCheck::check_vector(bool with_expressions) {
   for (std::size_t i = 0; i < value_.children.size(); ++i) {
     TomlNode& component = value_.children[i];
     if (make_finite_number(component) || (with_expressions && component.kind == Kind::text)) continue;
-    refuse(component.location, fmt::format("entry {} of \"{}\" must be a finite number{}; found {}", i + 1, key_.name,
-                                           with_expressions ? " or an expression" : "", describe(component)));
+    refuse(component.location,
+           fmt::format("entry {} of \"{}\" must be a finite number{}; found {}{}", i + 1, key_.name,
+                       with_expressions ? " or an expression" : "", describe(component), unit_hint(component)));
   }
 }
 
@@ -160,8 +167,8 @@ void ValueCheck::check_numbers() {
     TomlNode& entry = value_.children[i];
     const std::string found = describe(entry);
     if (make_finite_number(entry) && is_within(key_.range, entry.real)) continue;
-    refuse(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}", i + 1, key_.name,
-                                       admissible_with_unit(of_entry), found));
+    refuse(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}{}", i + 1, key_.name,
+                                       admissible_with_unit(of_entry), found, unit_hint(entry)));
   }
 }
 

@@ -139,8 +139,8 @@ constexpr const char* rules = R"page(## Rules
   `--set time.step=1e-4`, `--set contact.0.friction=0` (entries of `[[…]]` are counted from 0),
   `--set obstacle.floor.normal=[0,1]`, `--set material.0.damping.mass=0.1`, `--set traction.0.parameters.p=50`. The value
   is TOML; otherwise it is a text, which needs no quotes: `--set time.scheme=midpoint`. Keys that belong to one type only
-  (beta, gamma and preset of `newmark`) are ignored if `--set` replaces the type by one without them; between preset and beta
-  or gamma, `--set` takes precedence over the file.
+  (beta, gamma and preset of `newmark`) are refused with another one, also with the default, but ignored if `--set` replaces the
+  type; between preset and beta or gamma, `--set` takes precedence over the file.
 
 )page";
 

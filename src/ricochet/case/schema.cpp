@@ -168,8 +168,10 @@ void add_types(const Section& section, Json& schema) {
   for (const TypeKeys& type : section.types) {
     const Json then = type_conditions(section, type);
     if (then.empty()) continue;
+    // Without "required" the condition also holds for entries that leave the choice at its default.
     Json given{{"properties", {{section.type_key, {{"const", type.name}}}}}};
-    if (!find_key(section.keys, section.type_key)->default_value) given["required"] = Json::array({section.type_key});
+    if (find_key(section.keys, section.type_key)->default_value != type.name)
+      given["required"] = Json::array({section.type_key});
     conditions.push_back({{"if", given}, {"then", then}});
   }
   if (!conditions.empty()) schema["allOf"] = conditions;

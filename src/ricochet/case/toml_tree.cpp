@@ -4,6 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
 #include <tuple>
 
 #include "ricochet/base/error.hpp"
@@ -79,8 +81,8 @@ std::string real_text(double value) {
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-/// Returns a hint if a number with a decimal comma is at a position of the document, counted from 1; else "".
-std::string decimal_comma_hint(const std::string& document, const SourceLocation& location) {
+/// Returns a hint if a number with a decimal comma or a unit is at a position of the document, counted from 1; else "".
+std::string number_hint(const std::string& document, const SourceLocation& location) {
   std::size_t begin = 0;
   for (int line = 1; line < location.line; ++line) {
     begin = document.find('\n', begin);
@@ -90,6 +92,9 @@ std::string decimal_comma_hint(const std::string& document, const SourceLocation
   const std::string line = document.substr(begin, document.find('\n', begin) - begin);
   constexpr std::string_view digits = "0123456789";
   const auto comma = static_cast<std::size_t>(location.column) - 1;
+  const std::size_t equals = line.find('=');
+  if (equals < comma && line.find('=', equals + 1) == std::string::npos && is_number_with_unit(line.substr(equals + 1)))
+    return units_are_not_written;
   if (location.column < 2 || comma + 1 >= line.size() || line[comma] != ',') return "";
   if (digits.find(line[comma - 1]) == std::string_view::npos || digits.find(line[comma + 1]) == std::string_view::npos)
     return "";
@@ -125,13 +130,23 @@ TomlNode* TomlNode::find(std::string_view name) {
   return const_cast<TomlNode*>(static_cast<const TomlNode*>(this)->find(name));
 }
 
+bool is_number_with_unit(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin == std::string::npos || text.find_first_of("+-.0123456789", begin) != begin) return false;
+  char* end = nullptr;
+  std::strtod(text.c_str() + begin, &end);
+  const std::size_t unit = text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str()));
+  return end != text.c_str() + begin && unit != std::string::npos &&
+         std::isalpha(static_cast<unsigned char>(text[unit])) != 0;
+}
+
 TomlNode parse_toml(const std::string& document, const std::string& file) {
   try {
     return convert(toml::parse(document), file);
   } catch (const toml::parse_error& problem) {
     const SourceLocation location = location_of(problem.source(), file);
     throw Error(ErrorKind::invalid_input, fmt::format("{}: invalid TOML: {}{}", location.text(), problem.description(),
-                                                      decimal_comma_hint(document, location)));
+                                                      number_hint(document, location)));
   }
 }
 

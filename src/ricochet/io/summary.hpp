@@ -220,6 +220,9 @@ void write_summary(const std::string& path, const RunSummary& summary);
 [[nodiscard]] RunSummary read_summary_of_run(const std::string& directory);
 /// Reads its text. Throws Error(file_access) likewise.
 [[nodiscard]] std::string summary_text_of_run(const std::string& directory);
+/// Returns the reason why no summary.json has a number at a dotted path, with the path that was probably meant; "" if
+/// one may have it.
+[[nodiscard]] std::string summary_path_problem(const std::string& path);
 /// Returns a number of a summary by its dotted path ("extrema.total_energy.maximum", "steps"). Throws
 /// Error(invalid_input).
 [[nodiscard]] double summary_value(const std::string& json_text, const std::string& path);

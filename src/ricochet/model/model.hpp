@@ -118,6 +118,8 @@ struct BuildTimes {
 /// Reads the mesh and builds the semidiscrete problem. Throws Error(invalid_input) with file:line:column of the entry
 /// of the case that does not fit the mesh, and states what the mesh has instead.
 [[nodiscard]] std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times = nullptr);
+/// Makes those checks of an axisymmetric case that need no mesh, for a mesh that is not there yet.
+void check_without_mesh(const Case& input);
 
 /// Builds the model without the forces of cells (K, and damping proportional to it), for a body that is divided among
 /// ranks before these are assembled.

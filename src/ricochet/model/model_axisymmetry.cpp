@@ -50,6 +50,19 @@ void check_axisymmetry(const Case& input, int dimension) {
       refuse_radial(input, motion.section + ".velocity", motion.velocity[0], "\"velocity\"");
     refuse_spin(input, motion);
   }
+  for (const ObstacleSection& obstacle : input.obstacles) {
+    if (obstacle.is_free())
+      refuse(input, "obstacle." + obstacle.name,
+             "rigid bodies that move freely are supported in plane and three-dimensional cases, not in axisymmetric "
+             "cases: mesh the body as a part with a stiff material, or prescribe its motion");
+  }
+}
+
+void check_without_mesh(const Case& input) {
+  if (!is_axisymmetric(input)) return;  // other cases have the dimension of their mesh
+  check_axisymmetry(input, 2);
+  Model obstacles;
+  make_obstacles(input, obstacles, 2);
 }
 
 void check_axisymmetric_obstacle(const Case& input, const ObstacleSection& section, const Obstacle& obstacle) {

@@ -10,6 +10,7 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 #include "ricochet/problem/penetrating_points.hpp"
+#include "ricochet/simulation/monitor/penetration_phrases.hpp"
 
 /// @file [[contact]] between bodies: which side carries the multipliers, and how the groups face each other.
 namespace ricochet {
@@ -256,12 +257,10 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
   // A static start pushes a body that is deeper inside through the obstacle: it is not where it is meant to be. (Bodies
   // that overlap by more than half a cell are not paired.)
   const bool may_be_press_fit = overlap.deepest <= node_spacing(model.space, pair.facets);
-  const char* const remedy =
-      may_be_press_fit
-          ? "move one of them away, check on which side of the obstacle the body is (the normal of a plane points out "
-            "of it, other shapes have a \"side\"), or set initial.displacement = \"static\" for a press fit"
-          : "check on which side of the obstacle the body is (the normal of a plane points out of it, other shapes "
-            "have a \"side\"), or move one of them away";
+  const std::string side = penetration_phrases::check_side;
+  const std::string remedy =
+      may_be_press_fit ? "move one of them away, " + side + ", or set initial.displacement = \"static\" for a press fit"
+                       : side + ", or move one of them away";
   refuse(input, fmt::format("contact.{}.group", model.contacts[number].entry),
          fmt::format("at the start {} of group \"{}\" {} inside obstacle \"{}\", the deepest by {:.3g} at {}, and "
                      "would be pushed out at once, which creates energy; {}",

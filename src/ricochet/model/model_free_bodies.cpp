@@ -91,10 +91,6 @@ void add_free_bodies(const Case& input, Model& model) {
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     const ObstacleSection& section = input.obstacles[k];
     if (!section.is_free()) continue;
-    if (is_axisymmetric(input))
-      refuse(input, "obstacle." + section.name,
-             "rigid bodies that move freely are supported in plane and three-dimensional cases, not in axisymmetric "
-             "cases");
     if (d == 3 && section.rotation_spring > 0.0)
       refuse(input, "obstacle." + section.name + ".rotation_spring",
              "a spring against rotation is supported in two dimensions only: in three, hold the rotation or damp it");

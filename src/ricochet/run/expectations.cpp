@@ -84,33 +84,23 @@ ExpectationResult described(const ExpectSection& expect) {
 }
 
 /// Returns the reason why a quantity cannot be evaluated in a run of this case, or "".
-std::string problem_of(const Case& input, const Quantity& quantity, const std::vector<std::string>& columns,
-                       double end) {
-  if (quantity.kind == Quantity::Kind::summary_value) return "";
-  if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
+std::string problem_of(const Case& input, const Quantity& quantity, const std::vector<std::string>& columns) {
+  const bool is_column = quantity.kind != Quantity::Kind::summary_value;
+  if (is_column && std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
     return no_such_column(input, quantity.name, columns);
-  std::vector<double> times;
-  if (quantity.kind == Quantity::Kind::value_at_time) times = {quantity.time};
-  if (quantity.interval) times = {quantity.interval->begin, quantity.interval->end};
-  for (const double time : times) {
-    if (time < 0.0 || time > end * (1.0 + 1e-9))
-      return fmt::format("the time {:.9g} is outside the run, which extends from 0 to {:.9g}", time, end);
-  }
-  return "";
+  return impossible_in(input.time, quantity);
 }
 
 }  // namespace
 
 void check_expected_quantities(const Case& input, const Model& model) {
   const std::vector<std::string> columns = names_of(history_columns(model));
-  const double end =
-      input.time.adaptive ? input.time.end : static_cast<double>(step_count(input.time)) * input.time.step;
   Problems problems;
   for (std::size_t i = 0; i < input.expectations.size(); ++i) {
     const ExpectSection& expect = input.expectations[i];
     if (!reason_not_to_check(input, expect, ExpectationScope::settings_of_the_case).empty()) continue;
     const auto check = [&](const std::string& key, const std::string& text) {
-      const std::string problem = problem_of(input, parse_quantity(text), columns, end);
+      const std::string problem = problem_of(input, parse_quantity(text), columns);
       if (!problem.empty()) problems.add(input.where(fmt::format("expect.{}.{}", i, key)), problem);
     };
     check("quantity", expect.quantity);
@@ -137,6 +127,7 @@ std::vector<ExpectationResult> check_expectations(const Case& input, const std::
       } catch (const Error& problem) {
         result.holds = false;
         result.note = problem.what();
+        result.location = input.where(fmt::format("expect.{}.quantity", i)).text();
       }
     }
     results.push_back(result);

@@ -161,7 +161,28 @@ double value_of_course(const Quantity& quantity, const TimeSeries& course) {
   return 0.0;
 }
 
+/// Returns the reason why no run with these steps has a row, or "".
+std::string impossible_row(const TimeSection& time, const Quantity& quantity) {
+  if (time.adaptive || quantity.kind != Quantity::Kind::history_value) return "";
+  const long rows = step_count(time) + 1;
+  if (quantity.row < rows && quantity.row >= -rows) return "";
+  return fmt::format("the row {} is outside of history.csv, which has at most {}", quantity.row, counted(rows, "row"));
+}
+
 }  // namespace
+
+std::string impossible_in(const TimeSection& time, const Quantity& quantity) {
+  if (quantity.kind == Quantity::Kind::summary_value) return summary_path_problem(quantity.name);
+  std::vector<double> times;
+  if (quantity.kind == Quantity::Kind::value_at_time) times = {quantity.time};
+  if (quantity.interval) times = {quantity.interval->begin, quantity.interval->end};
+  const double end = run_end(time);
+  for (const double instant : times) {
+    if (instant < 0.0 || instant > end * (1.0 + 1e-9))
+      return fmt::format("the time {:.9g} is outside the run, which extends from 0 to {:.9g}", instant, end);
+  }
+  return impossible_row(time, quantity);
+}
 
 std::string no_such_column(const std::string& name, const std::vector<std::string>& names) {
   const std::string near = nearest_name(name, names);

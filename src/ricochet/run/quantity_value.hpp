@@ -15,6 +15,10 @@ namespace ricochet {
 /// is no such column, row or entry, a time lies outside the rows, or an event never occurs.
 [[nodiscard]] double value_of(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json);
 
+/// Returns the reason why no run with these steps has a quantity, whatever its columns: an entry that summary.json does
+/// not have, a time outside the run or a row beyond the last; "" if it may have it.
+[[nodiscard]] std::string impossible_in(const TimeSection& time, const Quantity& quantity);
+
 /// Returns the message that history.csv has no column of this name, with the one that may be meant.
 [[nodiscard]] std::string no_such_column(const std::string& name, const std::vector<std::string>& names);
 

@@ -11,7 +11,7 @@ namespace ricochet {
 
 void warn_of_end(const TimeSection& time) {
   if (time.adaptive) return;
-  const double end = static_cast<double>(step_count(time)) * time.step;
+  const double end = run_end(time);
   if (std::abs(end - time.end) <= 1e-9 * time.end) return;
   log::warning(
       fmt::format("{}{:.9g} is not a whole number of steps of {:.9g}: the run ends at t = {:.9g}, after step {}",

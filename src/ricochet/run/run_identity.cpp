@@ -195,8 +195,6 @@ void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
 void require_same_case(const Case& input, const std::string& version_before,
                        const std::map<std::string, std::string>& values_before, const std::string& before) {
   std::string differences;
-  if (version_before != version)
-    differences += fmt::format("\n  it ran with Ricochet {}, this is {}", version_before, version);
   const std::map<std::string, std::string> now = deciding_values(input);
   std::set<std::string> keys;
   for (const auto& [key, value] : now) keys.insert(key);
@@ -210,11 +208,20 @@ void require_same_case(const Case& input, const std::string& version_before,
     if (decides_results(key) && was != is)
       differences += fmt::format("\n  {}: {} was {}, now it is {}", input.where(key).text(), key, was, is);
   }
-  if (differences.empty()) return;
+  std::vector<std::string> reasons, advice;
+  if (version_before != version) {
+    reasons.push_back(fmt::format("it ran with Ricochet {}, this is {}", version_before, version));
+    advice.emplace_back("Continue it with the version that began it");
+  }
+  if (!differences.empty()) {
+    reasons.push_back("the case has changed since this run began:" + differences);
+    advice.emplace_back(advice.empty() ? "Restore it (including --set)" : "restore the case (including --set)");
+  }
+  if (reasons.empty()) return;
   throw Error(ErrorKind::invalid_input,
-              fmt::format("{} cannot be resumed: the case has changed since this run began:{}\nRestore it (including "
-                          "--set), start anew in another directory (-o), or overwrite the run (--force)",
-                          before, differences));
+              fmt::format("{} cannot be resumed: {}\n{}, start anew in another directory (-o), or overwrite the run "
+                          "(--force)",
+                          before, fmt::join(reasons, "; "), fmt::join(advice, " and ")));
 }
 
 void require_same_case(const Case& input, const Snapshot& snapshot, const std::string& before) {

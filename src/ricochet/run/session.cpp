@@ -30,7 +30,7 @@ StepSolverOptions solver_options(const Case& input, const Model& model) {
       ErrorKind::invalid_input,
       fmt::format(
           "{}: \"{}\" is available in `ricochet-mpi` only, which also runs with one process (docs/distributed.md); "
-          "this program has \"block-jacobi\", and a factorization with solver.method = \"direct\"",
+          "in this program set solver.preconditioner = \"block-jacobi\", or \"auto\" with solver.method = \"direct\"",
           input.where("solver.preconditioner").text(), name));
 }
 

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/json.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/names.hpp"
@@ -28,29 +27,34 @@ struct RequestedColumn {
   std::string column;   ///< column of history.csv
 };
 
-/// Requires an entry of summary.json at a dotted path. Only its first part is checked, as the contents of an entry
-/// depend on the results of the run.
-void require_summary_entry(const std::string& request, const std::string& path) {
-  const Json summary = Json::parse(to_json(RunSummary{}));
-  Names known;
-  for (const auto& [name, value] : summary.items()) known.push_back(name);
-  const std::string name = path.substr(0, path.find('.')), near = nearest_name(name, known);
-  if (std::count(known.begin(), known.end(), name) > 0) return;
-  throw Error(ErrorKind::usage,
-              fmt::format("{}: summary.json has no entry \"{}\"; {}", request, name,
-                          near.empty() ? "it has " + join_names(known) : fmt::format("did you mean \"{}\"?", near)));
+[[noreturn]] void refuse(const std::string& request, const std::string& reason) {
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", request, reason));
 }
 
-std::vector<RequestedColumn> columns_in(const StudyQuestions& questions) {
+/// Refuses a quantity that no run has, whatever its columns.
+void require_possible(const Study& study, const std::string& request, const Quantity& quantity) {
+  std::string reason;
+  for (const StudyRun& run : study.runs) {
+    try {
+      reason = impossible_in(read_case(study.plan.case_path, run.planned.settings).time, quantity);
+    } catch (const Error&) {  // its row reports the error
+      continue;
+    }
+    if (reason.empty()) return;
+  }
+  if (!reason.empty()) refuse(request, reason);
+}
+
+std::vector<RequestedColumn> columns_in(const Study& study) {
   std::vector<RequestedColumn> columns;
   const auto add = [&](const std::string& option, const std::string& text) {
     const Quantity quantity = parse_quantity(text);
     const std::string request = option + " " + text;
-    if (quantity.kind == Quantity::Kind::summary_value) return require_summary_entry(request, quantity.name);
-    columns.push_back({request, quantity.name});
+    require_possible(study, request, quantity);
+    if (quantity.kind != Quantity::Kind::summary_value) columns.push_back({request, quantity.name});
   };
-  for (const std::string& text : questions.quantities) add("--quantity", text);
-  for (const auto& [text, value] : questions.exact) add("--exact", text);
+  for (const std::string& text : study.questions.quantities) add("--quantity", text);
+  for (const auto& [text, value] : study.questions.exact) add("--exact", text);
   return columns;
 }
 
@@ -96,7 +100,7 @@ std::optional<Names> columns_of(const Case& input) {
 }
 
 [[noreturn]] void refuse(const RequestedColumn& request, const Case& input, const Names& columns) {
-  throw Error(ErrorKind::usage, fmt::format("{}: {}", request.request, no_such_column(input, request.column, columns)));
+  refuse(request.request, no_such_column(input, request.column, columns));
 }
 
 /// Refuses a column that no run has, for runs whose meshes or probes differ.
@@ -119,7 +123,7 @@ HistoryTable empty_table(const Names& columns) {
 
 void check_requested_columns(const Study& study) {
   const StudyQuestions& questions = study.questions;
-  const std::vector<RequestedColumn> request = columns_in(questions);
+  const std::vector<RequestedColumn> request = columns_in(study);
   const bool compares_own_runs = !questions.compare.empty() && is_run_of_study(questions.reference);
   if (!questions.compare.empty() && !compares_own_runs) {
     const std::string path = (std::filesystem::path(questions.reference) / "history.csv").string();

@@ -88,6 +88,8 @@ const std::vector<ResultColumn>& all_columns() {
 std::string doubts_of(const RunSummary& s) {
   std::vector<std::string> doubts;
   if (const Impact* const first = s.first_restitution(); first != nullptr) {
+    if (!restitution_doubt(*first).empty())
+      doubts.emplace_back(*first->restitution() < 0.0 ? "restitution: negative" : "restitution: above 1");
     if (restitution_error(*first).is_large) doubts.emplace_back("restitution: inexact");
     if (!s.rotation.holds_in_impact(s.number_of(*first))) doubts.emplace_back("restitution: cells turned");
     if (is_distorted_by_rotation(*first)) doubts.emplace_back("restitution: the body turned");

@@ -74,6 +74,7 @@ TEST(Expression, RefusesListsAndAssignments) {
   expect_refusal("1,2", {"2 values"});
   expect_refusal("x, y, z", {"3 values"});
   expect_refusal("t=3", {"\"==\""});
+  expect_refusal("t**2", {"\"^\""});
   expect_refusal("= 3", {"\"==\""});
   expect_refusal("x = y == 2", {"\"==\""});
 }

@@ -73,6 +73,15 @@ TEST(CaseSchema, AsksForTheKeysOfTheTypeThatIsNamed) {
   EXPECT_EQ(required.at("sphere"), (Json{"centre", "radius"}));
 }
 
+TEST(CaseSchema, TakesTheDefaultForChosen) {
+  const Json schema = Json::parse(case_schema());
+  for (const Json& condition : schema.at("properties").at("time").at("allOf")) {
+    const Json& given = condition.at("if");
+    const bool is_default = given.at("properties").at("scheme").at("const") == "reduced-kane";
+    EXPECT_EQ(given.contains("required"), !is_default) << given.dump();
+  }
+}
+
 TEST(CaseSchema, AsksForAMeshOrForParts) {
   const Json schema = Json::parse(case_schema());
   const Json& alone = schema.at("oneOf").at(0);

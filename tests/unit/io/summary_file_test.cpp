@@ -67,6 +67,29 @@ TEST(SummaryFile, RefusesAFileWithoutAnEntry) {
 }
 
 /// The schema lists the entries in the order of the file, each with a text.
+TEST(SummaryFile, KnowsThePathsOfNumbers) {
+  for (const char* path :
+       {"steps", "impacts.3.restitution", "impacts.0.velocity_after.2", "extrema.total_energy.maximum",
+        "extrema.lowest.gap.maximum", "timings_seconds.steps", "bodies.0.moment_of_inertia"})
+    EXPECT_EQ(summary_path_problem(path), "") << path;
+  const std::string no_entry = "summary.json has no entry ";
+  EXPECT_EQ(summary_path_problem("impacts.0.restituton"),
+            no_entry + "\"impacts.0.restituton\"; did you mean \"impacts.0.restitution\"?");
+  EXPECT_EQ(summary_path_problem("impact.0.restitution"),
+            no_entry + "\"impact.0.restitution\"; did you mean \"impacts.0.restitution\"?");
+  EXPECT_EQ(summary_path_problem("extrema.lowest.gap.maximm"),
+            no_entry + "\"extrema.lowest.gap.maximm\"; did you mean \"extrema.lowest.gap.maximum\"?");
+  EXPECT_EQ(summary_path_problem("extrema.time.rocket"),
+            no_entry +
+                "\"extrema.time.rocket\"; extrema.time has \"first\", \"last\", \"minimum\", \"maximum\" and "
+                "\"total_variation\"");
+  EXPECT_EQ(summary_path_problem("steps.0"), no_entry + "\"steps.0\"; steps has no entries");
+  EXPECT_EQ(summary_path_problem("impacts.restitution"),
+            "summary.impacts is a list: specify the entry, counted from 0, as in summary.impacts.0.restitution");
+  for (const char* path : {"impacts", "impacts.0", "title", "extrema"})
+    EXPECT_EQ(summary_path_problem(path), "summary." + std::string(path) + " is not a number");
+}
+
 TEST(SummaryFile, HasASchema) {
   const Json schema = Json::parse(summary_schema()), whole = Json::parse(written_summary());
   std::vector<std::string> described, there;

@@ -45,6 +45,17 @@ TEST(Restitution, IsNoneOfABodyThatStaysOrDidNotCome) {
   expect_none(impact(1.0, -0.5, 1.0), "did not come nearer");
 }
 
+TEST(Restitution, IsDoubtedBelowZeroAndAboveOne) {
+  EXPECT_EQ(restitution_doubt(impact(0.0, 1.0)), "");
+  EXPECT_EQ(restitution_doubt(impact(0.0, 1.0, 0.5)), "");
+  EXPECT_NE(restitution_doubt(impact(0.0, 1.0, -0.7)).find("still approaches"), std::string::npos);
+  Impact fast = impact(0.0, 1.0, 1.0);
+  EXPECT_NE(restitution_doubt(fast).find("above 1"), std::string::npos);
+  fast.method_energy = 1.0;
+  ASSERT_TRUE(restitution_error(fast).is_large) << "the method has created the energy, and that is said";
+  EXPECT_EQ(restitution_doubt(fast), "");
+}
+
 /// The velocity that friction, vibrations or gravity give to a body that hardly approaches would be 1000 times its
 /// approach velocity.
 TEST(Restitution, IsNoneWhereOtherThingsMakeTheVelocityAfter) {

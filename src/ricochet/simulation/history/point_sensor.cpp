@@ -151,6 +151,17 @@ Index with_multipliers(const DisplacementSpace& space, const ContactBoundary& co
   return is_watched || best < 0 ? nearest : best;
 }
 
+/// Returns whether a contact node of another body coincides with this one.
+bool touches_another_body(const ProbeContext& setting, Index node) {
+  const Points& positions = setting.body.space->nodes;
+  const double limit = coincident * enclosing_diameter(positions);
+  const auto body_of = [&](Index any) { return setting.bodies.connected.of_node[static_cast<std::size_t>(any)]; };
+  const std::vector<Index>& nodes = setting.problem.contact.nodes;
+  return std::any_of(nodes.begin(), nodes.end(), [&](Index other) {
+    return (positions.col(other) - positions.col(node)).norm() <= limit && body_of(other) != body_of(node);
+  });
+}
+
 void add_node(const ProbeContext& setting, const std::string& name, Index node, double distance,
               ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
@@ -177,7 +188,7 @@ void find_point(const ProbeContext& setting, ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
   const NearestNode nearest = nearest_node(space, setting.vector("at"));
   const Index node = with_multipliers(space, setting.problem.contact, nearest.node);
-  if (node != nearest.node) {
+  if (touches_another_body(setting, node)) {
     const int body = setting.bodies.connected.of_node[static_cast<std::size_t>(node)];
     log::info(
         fmt::format("probe \"{}\": nodes of two bodies coincide there; it is at the node of {}, which carries "

@@ -78,6 +78,18 @@ std::string why_no_restitution(const Impact& impact) {
   return {};
 }
 
+std::string restitution_doubt(const Impact& impact) {
+  constexpr double rounding = 1e-3;  // of the method: a rebound without losses may exceed 1 by as much
+  const std::optional<double> restitution = impact.restitution();
+  if (!restitution || (*restitution >= 0.0 && *restitution <= 1.0 + rounding)) return "";
+  if (*restitution > 1.0)
+    return restitution_error(impact).is_large
+               ? ""
+               : "above 1: energy of deformation or rotation has become that of the rebound";
+  return impact.other ? "their centres still approach each other after the last force"
+                      : "its centre still approaches the obstacle after the last force";
+}
+
 RestitutionError restitution_error(const Impact& impact) {
   // Large is a tenth of the loss in the impact, but nothing that the first three digits of e do not show.
   constexpr double large_beside_impact = 0.1, visible = 1e-3;

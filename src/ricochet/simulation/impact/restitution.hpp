@@ -12,6 +12,10 @@ namespace ricochet {
 /// that the ratio would characterize these. For two bodies the relative motion counts. Empty if there is a restitution.
 [[nodiscard]] std::string why_no_restitution(const Impact& impact);
 
+/// Doubt about a restitution that no single rebound has: of a body that leaves while it still moves inward, or with
+/// more than the velocity of its approach, which the method did not create. Empty if there is none.
+[[nodiscard]] std::string restitution_doubt(const Impact& impact);
+
 /// Energy that the time discretization has created during an impact, and 1 − e² of its restitution e: both as fractions
 /// of ½ m v², v the normal velocity before and m the approach_mass().
 struct RestitutionError {

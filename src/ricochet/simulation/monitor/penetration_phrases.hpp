@@ -14,6 +14,9 @@ namespace ricochet::penetration_phrases {
 /// "3.1e-06 (0.00012 of its size)"
 [[nodiscard]] std::string depth_text(const UnwatchedPenetration& p);
 
+inline constexpr const char* check_side =
+    "check on which side of the obstacle the body is (the normal of a plane points out of it, other shapes have a "
+    "\"side\")";
 inline constexpr const char* see_summary = "see \"unwatched_penetration\" in summary.json for the largest depth";
 
 }  // namespace ricochet::penetration_phrases

@@ -223,6 +223,9 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
       own.empty() ? "no boundary group of the mesh contains it; \"boundary\" is built in and names the whole boundary"
                   : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
   if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", location);
+  if (obstacles_.deepest()[obstacle].time == 0.0)
+    return fmt::format("{}, or extend the [[contact]] group {}, which does not reach that far ({})", words::check_side,
+                       join_names(groups), location);
   return fmt::format("the [[contact]] group {} does not reach that far; extend it ({})", join_names(groups), location);
 }
 
