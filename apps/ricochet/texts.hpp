@@ -30,12 +30,6 @@ namespace ricochet::program {
 /// from the nearest node at the start.
 void print_position(const Case& input, const Model& model);
 
-// Probes of nodes, in words.
-
-/// Prints a line per probe: the distance of its node for a point, the number of nodes and their range for a segment; on
-/// a contact boundary also the largest contact force.
-void print_probes(const RunSummary& summary);
-
 // Output about contacts and friction.
 
 /// Prints one line per [[contact]]: groups, law of friction, multipliers, motion of the obstacle.
@@ -97,16 +91,16 @@ void print_method(const RunSummary& summary);
 /// Returns the entry of the table that compares runs, with ≥ if only contact points were examined.
 [[nodiscard]] std::string deepest_penetration_text(const RunSummary& summary);
 
-// Results of a run in words: its impacts and its largest stress.
+// Results of a run in words: its impacts, its largest stress, its probes, its expectations.
 
 /// Prints a line for each of the first `most` impacts (0: of all), and one with the number of the others; or a line
 /// stating that there was no contact if the case has some.
 void print_impacts(const RunSummary& summary, std::size_t most);
 /// Prints one line, including how many of the states were examined; nothing if none was.
 void print_peak_stress(const RunSummary& summary);
-
-// Results of the [[expect]] entries, in words.
-
+/// Prints a line per probe: the distance of its node for a point, the number of nodes and their range for a segment; on
+/// a contact boundary also the largest contact force.
+void print_probes(const RunSummary& summary);
 /// Returns "found 3.5", or the reason why nothing was found.
 std::string found_text(const ExpectationResult& expectation);
 /// Prints how many hold, those that do not, and whether some were left out; nothing if there are no entries.

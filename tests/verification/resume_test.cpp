@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -152,6 +153,56 @@ TEST(Resume, AdaptiveSteps) {
         dragged_case(test_support::one_sided_block(), mass, test_support::time_of(scheme), "friction = 0.3\n");
     text.replace(text.find("step = 0.01\n"), 12, "step = \"adaptive\"\nlargest = 0.1\ntolerance = 1e-3\n");
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 1, 7, 23, 61})) << scheme;
+  }
+}
+
+/// Entries that another one of the same type takes the place of: the next number, none, and one too many.
+std::vector<Snapshot::Value> damaged(const Snapshot::Value& value) {
+  if (const auto* texts = std::get_if<Snapshot::Texts>(&value)) return {Snapshot::Texts(texts->size(), "x")};
+  if (const auto* integers = std::get_if<Snapshot::Integers>(&value)) {
+    std::vector<Snapshot::Value> result{Snapshot::Integers{}};
+    for (const std::int64_t change : {std::int64_t{-1}, std::int64_t{1}, std::int64_t{1} << 40}) {
+      Snapshot::Integers changed = *integers;
+      for (std::int64_t& each : changed) each += change;
+      result.emplace_back(changed);
+    }
+    return result;
+  }
+  const auto& reals = std::get<Vector>(value);
+  return {Vector(), Vector(Vector::Constant(reals.size() + 1, 1.0)), Vector(Vector::Constant(reals.size(), -1e300)),
+          Vector(Vector::Constant(reals.size(), std::nan("")))};
+}
+
+/// A snapshot may contain anything: with a changed entry the simulation goes on, or an Error says what is wrong.
+TEST(Resume, DamagedEntriesEndInNoOtherError) {
+  const ThrownBody disc = thrown_bodies()[0];
+  const std::string linear = dragged_case(disc, "equivalent", "scheme = \"reduced-kane\"\n", friction);
+  std::string finite = linear;
+  finite.insert(finite.find("density"), "law = \"neo-hookean\"\n");
+  const std::string iterative =
+      dragged_case(disc, "equivalent", newmark, friction) + "[solver]\nmethod = \"iterative\"\n";
+  for (const std::string& text : {linear, finite, iterative}) {
+    CaseRun run(text);
+    for (int step = 0; step < 75; ++step) run.simulation().advance();
+    const Snapshot whole = snapshot_of(run.simulation());
+    int refused = 0;
+    for (const auto& [name, value] : whole.values()) {
+      for (const Snapshot::Value& other : damaged(value)) {
+        Snapshot changed = whole;
+        changed.set(name, other);
+        try {
+          const std::unique_ptr<Scheme> scheme = make_scheme(run.input().time);
+          Simulation resumed(run.problem(), *scheme, changed, step_solver_options(run.input()),
+                             step_control_options(run.input().time));
+          resumed.advance();
+        } catch (const Error&) {
+          ++refused;
+        } catch (const std::exception& problem) {
+          ADD_FAILURE() << name << ": " << problem.what() << "\n" << text;
+        }
+      }
+    }
+    EXPECT_GT(refused, static_cast<int>(whole.values().size())) << text;
   }
 }
 

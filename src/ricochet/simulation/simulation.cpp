@@ -102,7 +102,7 @@ void Simulation::persist_levels(const SnapshotVisitor& visit) {
       if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
       // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
       StepSolverOptions stored = options_;
-      stored.chosen = saved_methods(saved, scheme_.operators(problem_).size());
+      stored.chosen = saved_methods(saved, scheme_.operators(problem_));
       make_level(number, stored);
     }
     levels_.at(number).solver->persist(saved);

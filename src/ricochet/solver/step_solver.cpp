@@ -229,11 +229,15 @@ class StagesStepSolver final : public StepSolver {
 
 }  // namespace
 
-std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved, std::size_t operators) {
+std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved,
+                                        const std::vector<OperatorCoefficients>& operators) {
   std::vector<SolverMethod> methods;
   saved(methods_entry, methods,
         {static_cast<std::int64_t>(SolverMethod::direct), static_cast<std::int64_t>(SolverMethod::iterative)});
-  saved.require(methods.size() == operators, methods_entry, "belongs to another number of operators");
+  saved.require(methods.size() == operators.size(), methods_entry, "belongs to another number of operators");
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    saved.require(operators[i].dofs != StageDofs::contact || methods[i] == SolverMethod::direct, methods_entry,
+                  "solves contact nodes by iterations");
   return methods;
 }
 

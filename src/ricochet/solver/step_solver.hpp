@@ -46,9 +46,10 @@ class StepSolver {
   [[nodiscard]] virtual const std::vector<ChosenMethod>& methods() const = 0;
 };
 
-/// Loads the methods of a solver of so many operators that was saved, for StepSolverOptions::chosen. Throws
-/// Error(invalid_input) if their number differs.
-[[nodiscard]] std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved, std::size_t operators);
+/// Loads the methods of a solver of these operators that was saved, for StepSolverOptions::chosen. Throws
+/// Error(invalid_input) if they are not such as make_step_solver chooses.
+[[nodiscard]] std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved,
+                                                      const std::vector<OperatorCoefficients>& operators);
 
 /// Computes everything that is constant for these operators. Throws Error(invalid_input), which names the node, if an
 /// operator is not positive definite.
