@@ -146,5 +146,5 @@ class MethodEnergy(TestCase):
         self.assertNotIn("!", rows["adaptive"][1])
         self.assertIn("  ! the method itself lost or created more than a tenth", text)
         self.assertIn(f"{folders['end']}: mass equivalent, built as ", text)
-        self.assertRegex(text, r"built as \S+; reactions: those at the end of the step\n")
+        self.assertRegex(text, r"built as \S+; reactions: those at the end of the step; variation of foot\.reaction_normal \S+\n")
 

@@ -185,9 +185,14 @@ std::string impossible_in(const TimeSection& time, const Quantity& quantity) {
 }
 
 std::string no_such_column(const std::string& name, const std::vector<std::string>& names) {
-  const std::string near = nearest_name(name, names);
-  return fmt::format("history.csv has no column \"{}\"{}", name,
-                     near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+  const std::string near = nearest_name(name, names), own = name.substr(0, name.find('.') + 1);
+  std::string hint = near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+  if (near.empty() && !own.empty()) {
+    std::vector<std::string> same = names;
+    std::erase_if(same, [&](const std::string& column) { return !column.starts_with(own); });
+    if (!same.empty()) hint = fmt::format("; those of \"{}\" are {}", own.substr(0, own.size() - 1), join_names(same));
+  }
+  return fmt::format("history.csv has no column \"{}\"{}", name, hint);
 }
 
 std::string no_such_column(const Case& input, const std::string& name, const std::vector<std::string>& names) {

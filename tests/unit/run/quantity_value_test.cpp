@@ -101,6 +101,11 @@ TEST(QuantityValue, IsTheTimeOfAnEvent) {
 
 TEST(QuantityValue, SaysWhatThereIsNot) {
   EXPECT_EQ(problem("history.forc[0]"), "history.csv has no column \"forc\"; did you mean \"force\"?");
+  EXPECT_EQ(
+      no_such_column("crate.displacement_x", {"time", "crate.force", "crate.displacement_average_x", "other.force"}),
+      "history.csv has no column \"crate.displacement_x\"; those of \"crate\" are \"crate.force\" and "
+      "\"crate.displacement_average_x\"");
+  EXPECT_EQ(no_such_column("rocket.fuel", {"time", "crate.force"}), "history.csv has no column \"rocket.fuel\"");
   EXPECT_EQ(problem("history.force[6]"), "history.force[6]: history.csv has 6 rows");
   for (const std::string quantity : {"history.force(t=0.6)", "max(history.force, 0.4, 0.6)"})
     EXPECT_EQ(problem(quantity),
