@@ -3,6 +3,7 @@
 import importlib
 import re
 import sys
+import tomllib
 import unittest.mock
 
 from harness import DISC, SOURCE
@@ -82,6 +83,13 @@ class Entries(unittest.TestCase):
                           (SOURCE / "tests" / "CMakeLists.txt").read_text(encoding="utf-8"))[1].split()
         found = (SOURCE / "tests" / "distributed").glob("*_test.py")
         self.assertEqual(sorted(names), sorted(path.name.removesuffix("_test.py") for path in found))
+
+    def test_each_planted_fault_is_where_the_list_says(self):
+        """`./dev faults` takes hours: a text that was rewritten must not come out only there."""
+        faults = tomllib.loads((SOURCE / "tests/faults/faults.toml").read_text(encoding="utf-8"))["fault"]
+        self.assertGreater(len(faults), 25)
+        counts = {fault["name"]: (SOURCE / fault["file"]).read_text(encoding="utf-8").count(fault["old"]) for fault in faults}
+        self.assertEqual({name: count for name, count in counts.items() if count != 1}, {})
 
 
 class Sizes(unittest.TestCase):
