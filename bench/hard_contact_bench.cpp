@@ -142,7 +142,7 @@ struct Tally {
   [[nodiscard]] std::string text() const {
     if (problems == 0) return "–";
     std::vector<double> sorted = seconds;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     const double median = 1e3 * sorted[sorted.size() / 2];
     const double percent = 100.0 / static_cast<double>(problems);
     char result[80];

@@ -75,7 +75,7 @@ void print_bodies(const Case& input, const Model& model, const ConnectedBodies& 
 void print_medians_of_materials(const Body& body) {
   constexpr double much = 3.0;
   const std::vector<double> medians = median_crossing_times(body);
-  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
+  const auto [least, most] = std::ranges::minmax_element(medians);
   if (!(*least > 0.0 && *most > much * *least)) return;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < medians.size(); ++i)
@@ -90,7 +90,7 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
   const std::vector<double> bodies = wave_crossing_times(model.body, connected);
   fmt::print("  a compression wave crosses the smallest cell in {:.4g}, a median one in {:.4g}, {} in {:.4g}\n",
              times.front(), times[times.size() / 2], bodies.size() > 1 ? "the largest body" : "the body",
-             *std::max_element(bodies.begin(), bodies.end()));
+             *std::ranges::max_element(bodies));
   const double step = input.time.step;
   if (const std::optional<double> critical = make_scheme(input.time)->stability_limit(model.problem)) {
     fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", *critical, step / *critical);
@@ -203,8 +203,7 @@ double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obsta
       std::clamp(static_cast<int>(evaluations / static_cast<double>(flights.size())), least_instants, most_instants);
   const auto touches = [&](double time) {
     const PosedObstacle placed = obstacle.at(time);
-    return std::any_of(flights.begin(), flights.end(),
-                       [&](const Flight& flight) { return placed.gap(flight.at(time)) <= 0.0; });
+    return std::ranges::any_of(flights, [&](const Flight& flight) { return placed.gap(flight.at(time)) <= 0.0; });
   };
   for (int k = 1; k <= instants; ++k) {
     double before = end * (k - 1) / instants, after = end * k / instants;
@@ -321,7 +320,7 @@ void print_groups(const Mesh& of_file, bool axisymmetric) {
 
 void print_cell_sizes(const Mesh& mesh) {
   std::vector<double> heights = cell_heights(mesh);
-  std::sort(heights.begin(), heights.end());
+  std::ranges::sort(heights);
   fmt::print("  heights of cells: smallest {:.4g}, median {:.4g}, largest {:.4g}\n", heights.front(),
              heights[heights.size() / 2], heights.back());
 }

@@ -56,7 +56,7 @@ std::string outcome_text(const ContactSolution& solution) {
 }
 
 std::string contact_states_text(const std::vector<ContactStatus>& status) {
-  const auto count = [&](ContactStatus which) { return std::count(status.begin(), status.end(), which); };
+  const auto count = [&](ContactStatus which) { return std::ranges::count(status, which); };
   return fmt::format("{} open, {} stick, {} slip, {} closed without friction", count(ContactStatus::open),
                      count(ContactStatus::stick), count(ContactStatus::slip), count(ContactStatus::closed));
 }
@@ -136,7 +136,7 @@ int contact(const ContactArguments& arguments) {
                                               arguments.tolerance));
   }
   const std::vector<std::string> known = contact_solver_registry().names();
-  if (std::find(known.begin(), known.end(), arguments.solver) == known.end()) {
+  if (std::ranges::find(known, arguments.solver) == known.end()) {
     throw Error(ErrorKind::usage, fmt::format("--solver {}: there is no such solver; available: {}", arguments.solver,
                                               join_names(known, ", ", false)));
   }

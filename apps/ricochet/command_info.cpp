@@ -200,9 +200,8 @@ int info(const InfoArguments& arguments) {
     if (!arguments.overrides.empty() && !is_case(path))
       throw Error(ErrorKind::usage, fmt::format("info: --set changes a case file, and {} is not one", path));
   }
-  const bool any_study =
-      std::any_of(paths.begin(), paths.end(), holds_study) || std::any_of(paths.begin(), paths.end(), holds_benchmarks);
-  if (paths.size() > 1 && !any_study && std::all_of(paths.begin(), paths.end(), is_result)) {
+  const bool any_study = std::ranges::any_of(paths, holds_study) || std::ranges::any_of(paths, holds_benchmarks);
+  if (paths.size() > 1 && !any_study && std::ranges::all_of(paths, is_result)) {
     print_comparison(paths);
     return 0;
   }

@@ -123,11 +123,11 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
 }  // namespace
 
 int plot(const PlotArguments& arguments) {
-  if (std::count(arguments.what.begin(), arguments.what.end(), "animation") > 0) return plot_animation(arguments);
+  if (std::ranges::count(arguments.what, "animation") > 0) return plot_animation(arguments);
   const std::string format =
       format_of(arguments.output, {"svg", "pdf", "png"}, "a figure must be an .svg, .pdf or .png file");
   const FigureOptions options = options_of(arguments);
-  const bool any_study = std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study);
+  const bool any_study = std::ranges::any_of(arguments.directories, holds_study);
   return write_figure(
       any_study ? describe_study(arguments, options) : describe_figure_of(arguments.directories, options), format,
       arguments.output);

@@ -103,10 +103,8 @@ int report_benchmarks(const ReportArguments& arguments) {
 }  // namespace
 
 int report(const ReportArguments& arguments) {
-  if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study))
-    return report_study(arguments);
-  if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_benchmarks))
-    return report_benchmarks(arguments);
+  if (std::ranges::any_of(arguments.directories, holds_study)) return report_study(arguments);
+  if (std::ranges::any_of(arguments.directories, holds_benchmarks)) return report_benchmarks(arguments);
   const ReportOptions options = options_of(arguments);
   const std::string folder = arguments.output.empty() ? common_folder(arguments.directories) : "";
   const std::string output =

@@ -123,7 +123,7 @@ void print_valid_without(const std::vector<std::string>& files, const ValidateAr
       "contacts, probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} "
       "--mesh` meshes the {} and checks them{}\n",
       case_file, case_file, arguments.overrides.empty() ? "" : " --set …", files.size() == 1 ? "file" : "files",
-      std::any_of(files.begin(), files.end(), may_run_commands)
+      std::ranges::any_of(files, may_run_commands)
           ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh only files that you trust)"
           : "");
 }

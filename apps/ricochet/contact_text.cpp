@@ -49,9 +49,8 @@ void print_contacts(const std::vector<ContactDescription>& contacts) {
       fmt::print("  \"{}\" tied to \"{}\"\n", c.group, c.opponent);
       continue;
     }
-    const auto pairs = std::count_if(contacts.begin(), contacts.end(), [&](const ContactDescription& other) {
-      return other.all_pairs_group == c.all_pairs_group;
-    });
+    const auto pairs = std::ranges::count_if(
+        contacts, [&](const ContactDescription& other) { return other.all_pairs_group == c.all_pairs_group; });
     const std::string what =
         c.all_pairs_group.empty()
             ? fmt::format("\"{}\" {} \"{}\"", c.group, c.between_bodies ? "against" : "with", c.opponent)
@@ -65,10 +64,9 @@ void print_contacts(const std::vector<ContactDescription>& contacts) {
 
 void print_friction(const RunSummary& summary) {
   const std::vector<ContactDescription>& contacts = summary.contacts;
-  const bool has_friction = std::any_of(contacts.begin(), contacts.end(), [](const ContactDescription& c) {
-    return c.friction > 0.0 || c.friction_bound > 0.0;
-  });
-  const bool moves = std::any_of(contacts.begin(), contacts.end(), [](const ContactDescription& c) {
+  const bool has_friction = std::ranges::any_of(
+      contacts, [](const ContactDescription& c) { return c.friction > 0.0 || c.friction_bound > 0.0; });
+  const bool moves = std::ranges::any_of(contacts, [](const ContactDescription& c) {
     return !c.obstacle_moves_freely && (!c.obstacle_velocity.empty() || c.obstacle_rotation_rate != 0.0);
   });
   const double obstacle_work = summary.digest("obstacle_work").last;

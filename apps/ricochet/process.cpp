@@ -87,7 +87,7 @@ void refuse_unknown_command(CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
-  if (word.empty() || word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return;
+  if (word.empty() || word.starts_with('-') || std::ranges::find(names, word) != names.end()) return;
   if (word.ends_with(".toml")) {
     throw Error(ErrorKind::usage,
                 fmt::format("a command is missing: write `ricochet run {0}`, or one of the commands that "

@@ -20,8 +20,7 @@ bool is_running(const std::string& directory, const RunSummary& summary) {
 }
 
 double seconds_of(const RunSummary& summary, const std::string& phase) {
-  const auto found = std::find_if(summary.timings.begin(), summary.timings.end(),
-                                  [&](const auto& timing) { return timing.first == phase; });
+  const auto found = std::ranges::find_if(summary.timings, [&](const auto& timing) { return timing.first == phase; });
   return found != summary.timings.end() ? found->second : 0.0;
 }
 
@@ -112,7 +111,7 @@ void describe_checkpoint(const std::string& path) {
   const Snapshot::Texts& keys = snapshot.texts("identity.case.keys");
   const Snapshot::Texts& values = snapshot.texts("identity.case.values");
   for (const char* key : {"time.scheme", "mass.type", "time.step", "time.end"}) {
-    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin());
     if (at < std::min(keys.size(), values.size())) fmt::print("  {} = {}\n", key, values[at]);
   }
 }

@@ -57,9 +57,9 @@ std::string body_text(int number, const RunSummary& summary) {
 /// Returns the name of the other body; a rigid body that moves freely has the name of its obstacle, in quotes.
 std::string other_body_text(const Impact& impact, const RunSummary& summary) {
   std::string name = body_text(impact.other->number, summary);
-  const bool is_obstacle = std::any_of(
-      summary.contacts.begin(), summary.contacts.end(),
-      [&](const ContactDescription& contact) { return contact.obstacle_moves_freely && contact.opponent == name; });
+  const bool is_obstacle = std::ranges::any_of(summary.contacts, [&](const ContactDescription& contact) {
+    return contact.obstacle_moves_freely && contact.opponent == name;
+  });
   return is_obstacle ? fmt::format("\"{}\"", name) : name;
 }
 
@@ -251,8 +251,8 @@ std::string probe_position_text(const RunSummary& summary, std::size_t probe) {
 
 /// Returns true if the force of a probe has a digest; probes with rows of their own have none.
 bool has_force(const RunSummary& summary, const Probe& probe) {
-  return probe.contact_node >= 0 && std::find(summary.columns.begin(), summary.columns.end(),
-                                              probe.name + ".reaction_normal") != summary.columns.end();
+  return probe.contact_node >= 0 &&
+         std::ranges::find(summary.columns, probe.name + ".reaction_normal") != summary.columns.end();
 }
 
 }  // namespace
@@ -294,10 +294,8 @@ std::string found_text(const ExpectationResult& expectation) {
 
 void print_expectations(const std::vector<ExpectationResult>& expectations) {
   if (expectations.empty()) return;
-  const auto met =
-      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
-  const auto left_out =
-      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
+  const auto met = std::ranges::count_if(expectations, [](const auto& e) { return e.checked && e.holds; });
+  const auto left_out = std::ranges::count_if(expectations, [](const auto& e) { return !e.checked; });
   const auto checked = static_cast<long>(expectations.size()) - left_out;
   const std::string others = fmt::format("{} not apply to this run (see summary.json for the reason)",
                                          left_out == 1 ? "1 does" : fmt::format("{} do", left_out));

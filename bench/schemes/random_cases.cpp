@@ -111,8 +111,8 @@ CaseResult run_case_with(const RandomCase& random_case, const Method& method) {
     result.lost = size > 0.0 ? (first - last) / size : 0.0;
   } catch (const Error& error) {
     result.failure = error.what();
-    std::replace(result.failure.begin(), result.failure.end(), '"', '\'');
-    std::replace(result.failure.begin(), result.failure.end(), '\n', ' ');
+    std::ranges::replace(result.failure, '"', '\'');
+    std::ranges::replace(result.failure, '\n', ' ');
   }
   return result;
 }
@@ -122,7 +122,7 @@ CaseResult run_case_with(const RandomCase& random_case, const Method& method) {
 int main(int argc, char** argv) {
   const std::string kind = argc > 1 ? argv[1] : "";
   const std::array<std::string, 5> kinds{"plane", "sphere", "turn", "pair", "slide"};
-  if (argc < 4 || std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+  if (argc < 4 || std::ranges::find(kinds, kind) == kinds.end()) {
     std::cerr << "usage: ricochet_random_cases plane|sphere|turn|pair|slide FIRST COUNT [METHOD [FOLDER]]\n";
     return 1;
   }

@@ -55,7 +55,7 @@ class Exchange : public testing::TestWithParam<PartitionMethod> {
   }
   [[nodiscard]] bool has(int rank, std::int64_t node) const {
     const auto& nodes = nodes_[static_cast<std::size_t>(rank)];
-    return std::binary_search(nodes.begin(), nodes.end(), node);
+    return std::ranges::binary_search(nodes, node);
   }
 
   Mesh mesh_;

@@ -61,7 +61,7 @@ TEST_P(Pieces, GroupsHaveTheirElements) {
     const bool of_cells = group.dimension == whole_->mesh.dimension;
     for (const Index member : group.members) {
       const Index number = (of_cells ? piece_.cell_number : piece_.facet_number)[static_cast<std::size_t>(member)];
-      EXPECT_TRUE(std::binary_search(whole->members.begin(), whole->members.end(), number));
+      EXPECT_TRUE(std::ranges::binary_search(whole->members, number));
     }
   }
 }

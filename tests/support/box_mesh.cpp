@@ -88,8 +88,7 @@ class Builder {
 
  private:
   [[nodiscard]] CellBlock* find_block(CellShape shape) {
-    const auto found = std::find_if(mesh_.facets.begin(), mesh_.facets.end(),
-                                    [&](const CellBlock& block) { return block.shape == shape; });
+    const auto found = std::ranges::find_if(mesh_.facets, [&](const CellBlock& block) { return block.shape == shape; });
     return found == mesh_.facets.end() ? nullptr : &*found;
   }
 
@@ -120,7 +119,7 @@ class Builder {
       for (const int end : {0, 1}) {
         const int wanted = 2 * end * box_.counts[a];
         const auto there = [&](int v) { return vertices[static_cast<std::size_t>(v)][a] == wanted; };
-        if (!std::all_of(own.begin(), own.end(), there)) continue;
+        if (!std::ranges::all_of(own, there)) continue;
         CellBlock& block = *find_block(facet_shape(box_.shape, facet));
         for (const std::size_t group : {static_cast<std::size_t>(1 + 2 * axis + end), mesh_.groups.size() - 1})
           members_[block.shape].emplace_back(group, block.size());

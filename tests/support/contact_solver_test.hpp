@@ -36,7 +36,7 @@ inline auto every_contact_solver() {
 }
 inline std::string contact_solver_test_name(const testing::TestParamInfo<std::string>& parameter) {
   std::string name = parameter.param;
-  std::replace(name.begin(), name.end(), '-', '_');
+  std::ranges::replace(name, '-', '_');
   return name;
 }
 

@@ -108,7 +108,7 @@ struct Raw {
     const auto make = [&](const std::string& name) {
       for (std::size_t end = name.find('/', 1); end != std::string::npos; end = name.find('/', end + 1)) {
         const std::string group = name.substr(0, end);
-        if (std::find(made.begin(), made.end(), group) != made.end()) continue;
+        if (std::ranges::find(made, group) != made.end()) continue;
         file.group(group);
         made.push_back(group);
       }

@@ -146,7 +146,7 @@ bool takes_stiffness_damping(const std::string& scheme) {
 
 bool Discretization::is_possible() const {
   const std::vector<std::string> masses = masses_of(scheme);
-  return std::find(masses.begin(), masses.end(), mass) != masses.end();
+  return std::ranges::find(masses, mass) != masses.end();
 }
 
 std::string Discretization::time() const {

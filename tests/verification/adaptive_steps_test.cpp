@@ -173,8 +173,7 @@ Bounces bounces(const std::vector<std::string>& changes) {
 /// Relative error of the height over time, in the L² norm.
 double error(const Bounces& run, const Bounces& reference) {
   const auto at = [](const Bounces& each, double time) {
-    const auto after =
-        static_cast<std::size_t>(std::lower_bound(each.time.begin(), each.time.end(), time) - each.time.begin());
+    const auto after = static_cast<std::size_t>(std::ranges::lower_bound(each.time, time) - each.time.begin());
     if (after == 0 || after >= each.time.size()) return each.height[std::min(after, each.height.size() - 1)];
     const double part = (time - each.time[after - 1]) / (each.time[after] - each.time[after - 1]);
     return (1.0 - part) * each.height[after - 1] + part * each.height[after];

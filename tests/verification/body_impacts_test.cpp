@@ -168,7 +168,7 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
   const std::vector<RigidMotionState> after = motion_of(run);
   const auto pairs = [&](int body, int other, const std::string& obstacle) {
     std::vector<Impact> result;
-    std::copy_if(found.begin(), found.end(), std::back_inserter(result), [&](const Impact& impact) {
+    std::ranges::copy_if(found, std::back_inserter(result), [&](const Impact& impact) {
       return impact.body == body && (impact.other ? impact.other->number : -1) == other && impact.obstacle == obstacle;
     });
     return result;

@@ -161,7 +161,7 @@ TEST(EnergyIdentity, SchemesRefuseTheMassesThatTheyDoNotTake) {
   for (const std::string& scheme : scheme_names()) {
     const std::vector<std::string> taken = masses_of(scheme);
     for (const std::string& mass : mass_names()) {
-      if (std::find(taken.begin(), taken.end(), mass) != taken.end()) continue;
+      if (std::ranges::find(taken, mass) != taken.end()) continue;
       SCOPED_TRACE(scheme + " takes " + mass);
       expect_error({"scheme \"" + scheme + "\""}, [&] { const CaseRun run(thrown_case(body, mass, time_of(scheme))); });
     }

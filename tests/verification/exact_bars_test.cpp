@@ -134,7 +134,7 @@ Errors solve(const Problem& problem, int cells, int degree, bool triangles, cons
   for (Index i = 0; i < nodes.cols(); ++i) {
     if (nodes(1, i) == 0.0) lower.push_back(i);
   }
-  std::sort(lower.begin(), lower.end(), [&](Index a, Index b) { return nodes(0, a) < nodes(0, b); });
+  std::ranges::sort(lower, [&](Index a, Index b) { return nodes(0, a) < nodes(0, b); });
   Errors e;
   e.step = step;
   double size[4] = {0.0, 0.0, 0.0, 0.0};
@@ -192,7 +192,7 @@ double order(double coarse, double fine) {
 std::string scheme_name(const std::string& text) {
   const std::size_t begin = text.find("scheme");
   std::string name = begin == std::string::npos ? "reduced-kane" : text.substr(begin);
-  std::replace(name.begin(), name.end(), '\n', ' ');
+  std::ranges::replace(name, '\n', ' ');
   return name;
 }
 

@@ -66,7 +66,7 @@ std::vector<ContactNode> contact_nodes(const CaseRun& run) {
     nodes.push_back(
         {run.problem().nodes(0, contact.nodes[i]), pressure[k], traction[k], run.state().contact_status[i]});
   }
-  std::sort(nodes.begin(), nodes.end(), [](const ContactNode& a, const ContactNode& b) { return a.x < b.x; });
+  std::ranges::sort(nodes, {}, &ContactNode::x);
   return nodes;
 }
 

@@ -95,8 +95,7 @@ std::vector<Frame> frames(const Setting& s, const SchemeChoice& choice) {
 
 /// Number of frames up to the first step in which a contact reopens; all frames for smooth schemes.
 std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
-  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Frame& f) { return f.normal.maxCoeff() > 0.0; }))
-      << "no contact";
+  EXPECT_TRUE(std::ranges::any_of(all, [](const Frame& f) { return f.normal.maxCoeff() > 0.0; })) << "no contact";
   if (smooth) return all.size();
   for (std::size_t k = 1; k < all.size(); ++k) {
     if (((all[k - 1].normal.array() > 0.0) && !(all[k].normal.array() > 0.0)).any()) return k;

@@ -192,7 +192,7 @@ TEST(Sphere, ADiscThatFillsABallIsToldToBeInside) {
   const std::string output = testing::TempDir() + "filled";
   (void)run_case(session, {.output_directory = output, .force = true, .quiet = true});
   const auto& told = session.warnings();
-  EXPECT_TRUE(std::any_of(told.begin(), told.end(), [](const std::string& warning) {
+  EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& warning) {
     return warning.find("the body is inside the obstacle, not next to it") != std::string::npos;
   }));
 }

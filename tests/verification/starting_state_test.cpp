@@ -37,7 +37,7 @@ TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
     for (const char* mass : {"consistent", "lumped", "equivalent", "equivalent-lumped"}) {
       const std::string name = std::string(scheme).substr(10, std::string(scheme).find('"', 10) - 10);
       const std::vector<std::string> taken = masses_of(name);
-      if (std::find(taken.begin(), taken.end(), mass) == taken.end()) continue;
+      if (std::ranges::find(taken, mass) == taken.end()) continue;
       // An unsupported body starts above the floor: its equilibrium is found on the floor.
       CaseRun run(block_case(
           0.01, mass,

@@ -86,8 +86,8 @@ TEST(StressRaisers, Crack) {
   box.distortion = 0.0;
   box.map = wide;
   Mesh mesh = make_box_mesh(box);
-  Group& bottom = *std::find_if(mesh.groups.begin(), mesh.groups.end(),
-                                [](const Group& group) { return group.name == "y0" && group.dimension == 1; });
+  Group& bottom =
+      *std::ranges::find_if(mesh.groups, [](const Group& group) { return group.name == "y0" && group.dimension == 1; });
   std::erase_if(bottom.members, [&](Index facet) {
     const IndexInBlocks place = locate_in_blocks(mesh.facets, facet);
     const Index* const nodes = mesh.facets[place.block].cell(place.local);

@@ -86,10 +86,10 @@ TEST(Subdomains, AreSeveralWhereThatIsLessWork) {
 void expect_division(const SemidiscreteProblem& problem, const std::vector<std::vector<Index>>& clusters) {
   std::vector<Index> found;
   for (const auto& cluster : clusters) {
-    EXPECT_TRUE(std::is_sorted(cluster.begin(), cluster.end()));
+    EXPECT_TRUE(std::ranges::is_sorted(cluster));
     found.insert(found.end(), cluster.begin(), cluster.end());
   }
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   EXPECT_EQ(found, all_points(problem));
 }
 

@@ -25,7 +25,7 @@ std::vector<std::string> environment(const std::vector<std::string>& replacement
   std::vector<std::string> variables = replacements;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const std::string_view text(*variable);
-    const bool replaced = std::any_of(replacements.begin(), replacements.end(), [text](const std::string& other) {
+    const bool replaced = std::ranges::any_of(replacements, [text](const std::string& other) {
       return text.starts_with(other.substr(0, other.find('=') + 1));
     });
     if (!replaced) variables.emplace_back(text);

@@ -22,7 +22,7 @@ std::string unreadable_reason(const std::string& path, int header) {
   std::array<char, 64> head{};
   std::ifstream file(path, std::ios::binary);
   file.ignore(header);
-  if (file.read(head.data(), head.size()) && std::all_of(head.begin(), head.end(), [](char c) { return c == '\0'; }))
+  if (file.read(head.data(), head.size()) && std::ranges::all_of(head, [](char c) { return c == '\0'; }))
     return "it begins with zeros: it is empty, or damaged";
   return "";
 }

@@ -55,7 +55,7 @@ Json JsonConversion::from_library(const Library& json) {
 }
 
 Json::Json(std::initializer_list<Json> elements) {
-  const bool are_entries = std::all_of(elements.begin(), elements.end(), [](const Json& element) {
+  const bool are_entries = std::ranges::all_of(elements, [](const Json& element) {
     return element.is_array() && element.size() == 2 && element.at(std::size_t{0}).is_string();
   });
   if (!are_entries) {
@@ -110,8 +110,7 @@ std::size_t Json::size() const {
 const Json* Json::find(std::string_view name) const {
   const auto* const object = std::get_if<Object>(&value_);
   if (object == nullptr) return nullptr;
-  const auto found =
-      std::find_if(object->begin(), object->end(), [&](const auto& entry) { return entry.first == name; });
+  const auto found = std::ranges::find_if(*object, [&](const auto& entry) { return entry.first == name; });
   return found != object->end() ? &found->second : nullptr;
 }
 

@@ -139,7 +139,7 @@ bool NumberLines::is_header() const {
   };
   const std::string_view first = bare(words_.front().text);
   return !first.empty() && !is_like_number(first) && is_letter(first.front()) &&
-         std::none_of(words_.begin(), words_.end(), [&](const Word& word) { return is_like_number(bare(word.text)); });
+         std::ranges::none_of(words_, [&](const Word& word) { return is_like_number(bare(word.text)); });
 }
 
 void NumberLines::refuse(const Word& word) const {

@@ -35,20 +35,19 @@ Parameters::Value standard_value(const Key& key) {
 bool fits(const Key& key, const Parameters::Value& value) {
   if (const auto* number = std::get_if<double>(&value)) {
     const bool is_whole = key.type == KeyType::integer && *number == std::trunc(*number);
-    const bool is_choice =
-        key.choices.empty() || std::any_of(key.choices.begin(), key.choices.end(), [&](const std::string& choice) {
-          return std::strtod(choice.c_str(), nullptr) == *number;
-        });
+    const bool is_choice = key.choices.empty() || std::ranges::any_of(key.choices, [&](const std::string& choice) {
+                             return std::strtod(choice.c_str(), nullptr) == *number;
+                           });
     return (key.type == KeyType::number || is_whole) && is_choice && std::isfinite(*number) &&
            is_within(key.range, *number);
   }
   if (const auto* text = std::get_if<std::string>(&value)) {
-    const bool is_choice = std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
+    const bool is_choice = std::ranges::find(key.choices, *text) != key.choices.end();
     return key.type == KeyType::text || (key.type == KeyType::choice && is_choice);
   }
   const auto& vector = std::get<std::vector<double>>(value);
   return key.type == KeyType::vector && (vector.size() == 2 || vector.size() == 3) &&
-         std::all_of(vector.begin(), vector.end(), [](double component) { return std::isfinite(component); });
+         std::ranges::all_of(vector, [](double component) { return std::isfinite(component); });
 }
 
 }  // namespace
@@ -67,7 +66,7 @@ const std::vector<double>& Parameters::vector(const std::string& name) const {
 
 void Parameters::complete(const std::vector<Key>& keys, const std::string& owner) {
   for (const auto& [name, value] : values_) {
-    if (std::any_of(keys.begin(), keys.end(), [&n = name](const Key& key) { return key.name == n; })) continue;
+    if (std::ranges::any_of(keys, [&n = name](const Key& key) { return key.name == n; })) continue;
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{} has no parameter \"{}\"; {}", owner, name,
                             keys.empty() ? "it has none" : "it has " + join_names(names_of(keys))));

@@ -51,7 +51,7 @@ std::pair<Ball, std::vector<Index>> smallest_ball(const Points& nodes, const std
     if (static_cast<Index>(chosen.size()) > nodes.rows() + 1) continue;
     const std::optional<Ball> ball = ball_through(nodes, chosen);
     if (!ball || (found && !(ball->radius < best.first.radius))) continue;
-    if (!std::all_of(points.begin(), points.end(), [&](Index point) { return ball->has(nodes.col(point)); })) continue;
+    if (!std::ranges::all_of(points, [&](Index point) { return ball->has(nodes.col(point)); })) continue;
     best = {*ball, chosen};
     found = true;
   }

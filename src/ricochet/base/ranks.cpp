@@ -19,7 +19,7 @@ void Ranks::run_collectively(const std::function<void()>& work) const {
     const std::string text = own->what();
     std::vector<std::int64_t> message{static_cast<std::int64_t>(own->kind())};
     message.insert(message.end(), text.begin(), text.end());
-    std::fill(messages.begin(), messages.end(), message);
+    std::ranges::fill(messages, message);
   }
   for (const std::vector<std::int64_t>& message : exchange(std::move(messages))) {
     if (message.empty()) continue;

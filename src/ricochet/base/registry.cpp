@@ -31,7 +31,7 @@ void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner
     if (!is_scalar && key.type != KeyType::vector)
       refuse(key, "has an unsupported type: it must be a number, an integer, a vector, a text or a choice");
     if (!is_scalar && key.default_value) refuse(key, "is a vector, which cannot have a default");
-    if (std::count_if(keys.begin(), keys.end(), [&](const Key& other) { return other.name == key.name; }) > 1)
+    if (std::ranges::count_if(keys, [&](const Key& other) { return other.name == key.name; }) > 1)
       refuse(key, "is defined twice");
   }
 }

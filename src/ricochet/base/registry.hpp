@@ -74,7 +74,7 @@ class Registry {
   /// Throws Error(invalid_input) that lists the names.
   [[nodiscard]] const Registration<Type>& find(const std::string& name) const {
     const auto same = [&](const Registration<Type>& entry) { return entry.name == name; };
-    const auto found = std::find_if(all_.begin(), all_.end(), same);
+    const auto found = std::ranges::find_if(all_, same);
     if (found != all_.end()) return *found;
     throw Error(ErrorKind::invalid_input, "unknown " + quoted(name) + "; known: " + join_names(names()));
   }

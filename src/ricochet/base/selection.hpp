@@ -25,7 +25,7 @@ template <class Value>
 
 /// Position of a number in an ascending list, or −1.
 [[nodiscard]] inline Index index_in(const std::vector<Index>& numbers, Index number) {
-  const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
+  const auto found = std::ranges::lower_bound(numbers, number);
   return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
 }
 /// Positions of those members that are in the list, in the order of `members`.

@@ -39,7 +39,7 @@ const Snapshot::Integers& Snapshot::integers(const std::string& name) const {
 
 const Snapshot::Integers& Snapshot::integers(const std::string& name, std::int64_t least, std::int64_t most) const {
   const Integers& values = integers(name);
-  const auto bad = std::find_if(values.begin(), values.end(), [&](std::int64_t v) { return v < least || v > most; });
+  const auto bad = std::ranges::find_if(values, [&](std::int64_t v) { return v < least || v > most; });
   if (bad != values.end()) refuse(name, fmt::format("has {}, which is not from {} to {}", *bad, least, most));
   return values;
 }

@@ -38,8 +38,7 @@ std::optional<std::size_t> near_distance(std::string_view word, std::string_view
 
 /// Compares part by part: a part that is too far off is not compensated by the length of another.
 std::optional<std::size_t> dotted_distance(std::string_view word, std::string_view candidate) {
-  if (std::count(word.begin(), word.end(), '.') != std::count(candidate.begin(), candidate.end(), '.'))
-    return near_distance(word, candidate);
+  if (std::ranges::count(word, '.') != std::ranges::count(candidate, '.')) return near_distance(word, candidate);
   std::size_t sum = 0;
   while (true) {
     const std::size_t dot = word.find('.'), other_dot = candidate.find('.');

@@ -82,20 +82,18 @@ void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& p
 
 const Section* find_section(std::string_view name) {
   const std::vector<Section>& sections = case_sections();
-  const auto found = std::find_if(sections.begin(), sections.end(), [name](const Section& section) {
-    return section.kind != SectionKind::top && section.name == name;
-  });
+  const auto found = std::ranges::find_if(
+      sections, [name](const Section& section) { return section.kind != SectionKind::top && section.name == name; });
   return found != sections.end() ? &*found : nullptr;
 }
 
 const TypeKeys* find_type(const Section& section, std::string_view name) {
-  const auto found = std::find_if(section.types.begin(), section.types.end(),
-                                  [name](const TypeKeys& type) { return type.name == name; });
+  const auto found = std::ranges::find_if(section.types, [name](const TypeKeys& type) { return type.name == name; });
   return found != section.types.end() ? &*found : nullptr;
 }
 
 const Key* find_key(const std::vector<Key>& keys, std::string_view name) {
-  const auto found = std::find_if(keys.begin(), keys.end(), [name](const Key& key) { return key.name == name; });
+  const auto found = std::ranges::find_if(keys, [name](const Key& key) { return key.name == name; });
   return found != keys.end() ? &*found : nullptr;
 }
 
@@ -210,7 +208,7 @@ bool is_plain_name(std::string_view name) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  return !name.empty() && std::all_of(name.begin(), name.end(), is_plain);
+  return !name.empty() && std::ranges::all_of(name, is_plain);
 }
 
 }  // namespace ricochet

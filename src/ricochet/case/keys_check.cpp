@@ -45,19 +45,19 @@ bool is_key_of(const std::vector<Key>& keys, const TomlNode& member) {
 
 // Tests for an unknown key that was probably meant to be this one, whose absence is then not reported separately.
 bool is_misspelt(const Key& key, const std::vector<Key>& keys, const TomlNode& table) {
-  return std::any_of(table.children.begin(), table.children.end(), [&](const TomlNode& member) {
+  return std::ranges::any_of(table.children, [&](const TomlNode& member) {
     return !is_key_of(keys, member) && nearest_key(member.key, keys) == key.name;
   });
 }
 
 // Tests for a table that cannot be filled in with defaults alone: it is absent unless it is specified.
 bool needs_a_user(const Key& table) {
-  return std::any_of(table.keys.begin(), table.keys.end(), [](const Key& key) { return key.required; });
+  return std::ranges::any_of(table.keys, [](const Key& key) { return key.required; });
 }
 
 /// Table that [part.a.b] is in TOML; null if it may be a misspelt key.
 const TomlNode* find_dotted(const Section& section, const TomlNode& entry) {
-  const auto found = std::find_if(entry.children.begin(), entry.children.end(), [&](const TomlNode& member) {
+  const auto found = std::ranges::find_if(entry.children, [&](const TomlNode& member) {
     return member.is_table() && !is_key_of(section.keys, member) && nearest_key(member.key, section.keys).empty();
   });
   return found != entry.children.end() ? &*found : nullptr;
@@ -296,7 +296,7 @@ bool TreeChecker::has_entries(const std::string& section) const {
 /// Returns whether that section replaces a key or section; also if its name is misspelt, which is reported separately.
 bool TreeChecker::is_replaced(const std::string& section) const {
   if (section.empty()) return false;
-  return has_entries(section) || std::any_of(root_.children.begin(), root_.children.end(), [&](const TomlNode& member) {
+  return has_entries(section) || std::ranges::any_of(root_.children, [&](const TomlNode& member) {
            return find_section(member.key) == nullptr && (member.is_table() || member.is_list_of_tables()) &&
                   nearest_section(member.key) == section;
          });

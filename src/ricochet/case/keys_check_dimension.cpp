@@ -33,7 +33,7 @@ void DimensionCheck::run(Problems& problems) {
     return std::tie(a_is_override, a.location.line, a.location.column) <
            std::tie(b_is_override, b.location.line, b.location.column);
   };
-  std::stable_sort(vectors_.begin(), vectors_.end(), before);
+  std::ranges::stable_sort(vectors_, before);
   const Found& first = vectors_.front();
   for (const Found& vector : vectors_) {
     if (vector.dimension == first.dimension) continue;

@@ -24,7 +24,7 @@ bool make_finite_number(TomlNode& value) {
 }
 
 bool is_choice(const std::string& word, const std::vector<std::string>& choices) {
-  return std::find(choices.begin(), choices.end(), word) != choices.end();
+  return std::ranges::find(choices, word) != choices.end();
 }
 
 /// Returns a word in lower case, without blanks and hyphens.

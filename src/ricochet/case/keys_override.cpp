@@ -106,7 +106,7 @@ std::vector<std::string> apply_overrides(TomlNode& root, const std::vector<std::
     } catch (const Error& problem) {
       problems.add(location, problem.what());
     }
-    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+    if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
   }
   return paths;
 }

@@ -62,8 +62,7 @@ void add_type_keys(Section& section, const std::string& type_key, std::vector<Ty
       added.push_back(std::move(key));
     }
   }
-  const auto at =
-      std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& key) { return key.name == type_key; });
+  const auto at = std::ranges::find_if(section.keys, [&](const Key& key) { return key.name == type_key; });
   at->type = KeyType::choice;
   at->members.push_back(std::move(parameters));
   for (const TypeKeys& type : types) at->choices.push_back(type.name);

@@ -68,7 +68,7 @@ bool names_bodies(const TomlNode& contact) {
   const auto is_name = [](const TomlNode& name) {
     return name.text == all_cells_name || name.text.find('*') != std::string::npos;
   };
-  return group != nullptr && (is_name(*group) || std::any_of(group->children.begin(), group->children.end(), is_name));
+  return group != nullptr && (is_name(*group) || std::ranges::any_of(group->children, is_name));
 }
 
 Section mesh_section() {

@@ -15,7 +15,7 @@ void Problems::add(const SourceLocation& location, const std::string& message) {
 void Problems::raise() const {
   if (problems_.empty()) return;
   std::vector<Problem> sorted = problems_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Problem& a, const Problem& b) {
+  std::ranges::stable_sort(sorted, [](const Problem& a, const Problem& b) {
     const bool a_is_override = a.location.line == 0, b_is_override = b.location.line == 0;
     return std::tie(a_is_override, a.location.line, a.location.column) <
            std::tie(b_is_override, b.location.line, b.location.column);

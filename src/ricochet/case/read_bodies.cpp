@@ -16,8 +16,7 @@ void read_file(const SectionReader& reader, BodyFile& body) {
   for (const SectionReader& rotation : reader.tables("turn")) {
     MeshRotation entry;
     rotation.fill(entry);
-    if (rotation.is_usable("axis") &&
-        std::all_of(entry.axis.begin(), entry.axis.end(), [](double a) { return a == 0.0; }))
+    if (rotation.is_usable("axis") && std::ranges::all_of(entry.axis, [](double a) { return a == 0.0; }))
       rotation.add_problem("axis", "\"axis\" must not be zero: it is the direction of the axis of rotation");
   }
   if (reader.is_given("rest_gap") && !reader.is_given("rest_on"))

@@ -75,8 +75,8 @@ bool mentions(const TomlNode& node, const std::string& name) {
     if ((at == 0 || !is_identifier(node.text[at - 1])) && (end == node.text.size() || !is_identifier(node.text[end])))
       return true;
   }
-  return std::any_of(node.children.begin(), node.children.end(),
-                     [&](const TomlNode& child) { return child.key != "parameters" && mentions(child, name); });
+  return std::ranges::any_of(node.children,
+                             [&](const TomlNode& child) { return child.key != "parameters" && mentions(child, name); });
 }
 
 /// Warns, as a misspelt parameter of --set would leave the old value in effect.

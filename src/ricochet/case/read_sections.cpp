@@ -114,7 +114,7 @@ void check_contact(const SectionReader& reader, ContactSection& contact) {
 
 void check_obstacle_name(const SectionReader& reader, const char* key, const std::vector<std::string>& obstacles) {
   const std::string name = reader.text(key);
-  if (!reader.is_usable(key) || std::find(obstacles.begin(), obstacles.end(), name) != obstacles.end()) return;
+  if (!reader.is_usable(key) || std::ranges::find(obstacles, name) != obstacles.end()) return;
   const std::string near = nearest_name(name, obstacles);
   reader.add_problem(key,
                      fmt::format("there is no [obstacle.{}]; {}", name,
@@ -217,7 +217,7 @@ void check_probe(const SectionReader& reader, ProbeSection& probe) {
   for (const Registration<ProbeKind>& other : probe_registry().all()) {
     const std::vector<std::string>& needed = other.alternatives.front();
     for (const Key& key : other.keys) {
-      if (std::find(needed.begin(), needed.end(), key.name) == needed.end() && reader.is_given(key.name) &&
+      if (std::ranges::find(needed, key.name) == needed.end() && reader.is_given(key.name) &&
           !reader.is_given(needed.front()))
         reader.add_problem(key.name, fmt::format("\"{}\" is for probes with \"{}\" only", key.name, needed.front()));
     }
@@ -225,7 +225,7 @@ void check_probe(const SectionReader& reader, ProbeSection& probe) {
   const std::vector<std::string> columns = reserved_probe_names();
   if (reader.is_usable("name") && !is_plain_name(probe.name)) {
     reader.add_problem("name", fmt::format("the name \"{}\" can only contain letters, digits, _ and -", probe.name));
-  } else if (std::find(columns.begin(), columns.end(), probe.name) != columns.end()) {
+  } else if (std::ranges::find(columns, probe.name) != columns.end()) {
     reader.add_problem("name",
                        fmt::format("the name \"{}\" is already that of a standard column of history.csv", probe.name));
   }

@@ -74,10 +74,10 @@ void SectionReader::read(const Key& key, std::vector<double>& value) const {
 void SectionReader::read(const Key& key, std::vector<int>& value) const {
   value.clear();
   for (const TomlNode& entry : usable(key.name)->children) {
-    const auto choice = std::find(key.choices.begin(), key.choices.end(), entry.text);
+    const auto choice = std::ranges::find(key.choices, entry.text);
     value.push_back(static_cast<int>(choice - key.choices.begin()));
   }
-  std::sort(value.begin(), value.end());
+  std::ranges::sort(value);
 }
 
 void SectionReader::read(const Key& key, std::vector<std::string>& value) const {

@@ -33,7 +33,7 @@ void convert_table(const toml::table& table, const std::string& file, TomlNode& 
     child.key_location = location_of(key.source(), file);
   }
   // toml++ sorts members by name; users of messages and results expect the order of the file.
-  std::stable_sort(node.children.begin(), node.children.end(), stands_before);
+  std::ranges::stable_sort(node.children, stands_before);
 }
 
 void convert_list(const toml::array& list, const std::string& file, TomlNode& node) {
@@ -117,12 +117,12 @@ std::string children_text(const TomlNode& node) {
 
 bool TomlNode::is_list_of_tables() const {
   return kind == Kind::list && !children.empty() &&
-         std::all_of(children.begin(), children.end(), [](const TomlNode& child) { return child.is_table(); });
+         std::ranges::all_of(children, [](const TomlNode& child) { return child.is_table(); });
 }
 
 const TomlNode* TomlNode::find(std::string_view name) const {
   const auto named = [name](const TomlNode& child) { return child.key == name; };
-  const auto found = std::find_if(children.begin(), children.end(), named);
+  const auto found = std::ranges::find_if(children, named);
   return kind == Kind::table && found != children.end() ? &*found : nullptr;
 }
 

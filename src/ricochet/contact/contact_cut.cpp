@@ -66,7 +66,7 @@ class ContactCutter {
     }
     if (axes.along != ContactAxis::none) return;
     std::erase(numbers, absent);
-    std::sort(numbers.begin(), numbers.end());
+    std::ranges::sort(numbers);
   }
   /// Columns without a number in the part are omitted.
   void cut(ContactAxes axes, SparseRowMatrix& matrix) {
@@ -124,7 +124,7 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
   if (!whole.follows_motion()) return own;
   const CurvedContactData* const curved = whole.geometry->curved();
   const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
-  if (curved == nullptr || std::any_of(curved->obstacles.begin(), curved->obstacles.end(), is_free_body))
+  if (curved == nullptr || std::ranges::any_of(curved->obstacles, is_free_body))
     throw Error(ErrorKind::invalid_input, "contact whose directions rotate with bodies cannot be divided");
   CurvedContactData data = *curved;
   persist(cutter, data);

@@ -17,7 +17,7 @@ class CombinedGeometry final : public ContactGeometry {
     for (const auto& part : parts_) part->node_gaps(displacement, time, gap);
   }
   [[nodiscard]] bool has_node(Index entry) const override {
-    return std::any_of(parts_.begin(), parts_.end(), [entry](const auto& part) { return part->has_node(entry); });
+    return std::ranges::any_of(parts_, [entry](const auto& part) { return part->has_node(entry); });
   }
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const override {
     for (const auto& part : parts_) {
@@ -40,7 +40,7 @@ class CombinedGeometry final : public ContactGeometry {
     for (const auto& part : parts_) part->end_step();
   }
   [[nodiscard]] bool has_frozen() const override {
-    return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->has_frozen(); });
+    return std::ranges::any_of(parts_, [](const auto& part) { return part->has_frozen(); });
   }
   void allow_overlap(Vector& gap) const override {
     for (const auto& part : parts_) part->allow_overlap(gap);

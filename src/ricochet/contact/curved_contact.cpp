@@ -156,8 +156,7 @@ class CurvedContact final : public ContactGeometry {
   }
   /// Returns null for a node that is not at a curved obstacle.
   [[nodiscard]] const CurvedContactData::Node* find_node(Index entry) const {
-    const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
-                                        [](const CurvedContactData::Node& node, Index e) { return node.entry < e; });
+    const auto found = std::ranges::lower_bound(data_.nodes, entry, {}, &CurvedContactData::Node::entry);
     return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
   }
   [[nodiscard]] SpaceVector node_position(Index node, const Vector& displacement) const {

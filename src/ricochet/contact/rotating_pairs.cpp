@@ -113,8 +113,7 @@ class RotatingPairs final : public ContactGeometry {
  private:
   /// Returns null for a node that faces no other body.
   [[nodiscard]] const Node* find_node(Index entry) const {
-    const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
-                                        [](const Node& node, Index e) { return node.entry < e; });
+    const auto found = std::ranges::lower_bound(data_.nodes, entry, {}, &Node::entry);
     return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
   }
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
@@ -147,7 +146,7 @@ class RotatingPairs final : public ContactGeometry {
     const Index d = dimension();
     row_.setZero(static_cast<Index>(point.nodes.size()) * d);
     const auto add = [&](Index node, const Vector3& value) {
-      const auto at = std::lower_bound(point.nodes.begin(), point.nodes.end(), node) - point.nodes.begin();
+      const auto at = std::ranges::lower_bound(point.nodes, node) - point.nodes.begin();
       row_.segment(at * d, d) += value.head(d);
     };
     const Vector3 start = point.normal.at(data_.node_positions, before),

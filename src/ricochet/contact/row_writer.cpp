@@ -22,7 +22,7 @@ bool RowWriter::write(SparseRowMatrix& matrix, std::vector<char>& changed) {
   std::erase_if(rows_, [&](const Row& row) { return is_same(matrix, row); });
   const bool any = !rows_.empty();
   if (any) {
-    std::sort(rows_.begin(), rows_.end(), [](const Row& one, const Row& other) { return one.number < other.number; });
+    std::ranges::sort(rows_, {}, &Row::number);
     std::size_t count = static_cast<std::size_t>(matrix.nonZeros());
     for (const Row& row : rows_) {
       count += row.end - row.begin;

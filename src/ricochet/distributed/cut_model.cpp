@@ -63,9 +63,8 @@ void cut_probe_targets(const std::vector<ProbeTargets>& global, const Piece& pie
       probe.node = index_in(piece.node_number, node);
       if (probe.node < 0 || entry < 0) continue;
       // Entries keep their order, so that the offset among the entries of the node is unchanged.
-      const auto first = std::find(contact.nodes.begin(), contact.nodes.end(), node) - contact.nodes.begin();
-      probe.contact_node =
-          std::find(own.nodes.begin(), own.nodes.end(), probe.node) - own.nodes.begin() + (entry - first);
+      const auto first = std::ranges::find(contact.nodes, node) - contact.nodes.begin();
+      probe.contact_node = std::ranges::find(own.nodes, probe.node) - own.nodes.begin() + (entry - first);
     }
   }
 }

@@ -9,7 +9,7 @@ namespace {
 /// Converts pairs of node and rank to lists of ranks per node, in one array.
 void build_rank_lists(std::vector<std::pair<Index, int>>& pairs, Index nodes, std::vector<std::size_t>& begin,
                       std::vector<int>& ranks) {
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   begin.assign(static_cast<std::size_t>(nodes) + 1, 0);
   ranks.clear();
@@ -24,7 +24,7 @@ void build_rank_lists(std::vector<std::pair<Index, int>>& pairs, Index nodes, st
 
 Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& problem, std::vector<int> rank_of_cell)
     : rank_of_cell_(std::move(rank_of_cell)) {
-  const int size = rank_of_cell_.empty() ? 1 : *std::max_element(rank_of_cell_.begin(), rank_of_cell_.end()) + 1;
+  const int size = rank_of_cell_.empty() ? 1 : *std::ranges::max_element(rank_of_cell_) + 1;
   more_nodes_.resize(static_cast<std::size_t>(size));
   {
     std::vector<std::pair<Index, int>> pairs;
@@ -67,7 +67,7 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
 
 bool Division::has(int rank, Index node) const {
   const std::span<const int> ranks = ranks_of(node);
-  return std::binary_search(ranks.begin(), ranks.end(), rank);
+  return std::ranges::binary_search(ranks, rank);
 }
 
 int Division::rank_of_pair(Index one, Index other) const {
@@ -86,7 +86,7 @@ std::vector<Index> Division::points_of(int rank) const {
 }
 
 void Division::add_nodes(const std::vector<std::vector<Index>>& more) {
-  if (std::all_of(more.begin(), more.end(), [](const auto& nodes) { return nodes.empty(); })) return;
+  if (std::ranges::all_of(more, [](const auto& nodes) { return nodes.empty(); })) return;
   const auto nodes = static_cast<Index>(begin_.size()) - 1;
   std::vector<std::pair<Index, int>> pairs;
   for (Index node = 0; node < nodes; ++node) {
@@ -100,7 +100,7 @@ void Division::add_nodes(const std::vector<std::vector<Index>>& more) {
   }
   build_rank_lists(pairs, nodes, begin_, ranks_);
   for (auto& own : more_nodes_) {
-    std::sort(own.begin(), own.end());
+    std::ranges::sort(own);
     own.erase(std::unique(own.begin(), own.end()), own.end());
   }
 }

@@ -78,7 +78,7 @@ void transfer_geometry(Archive& archive, const std::vector<const Obstacle*>& of_
   if (!archive.reads()) {
     data = *contact.geometry->curved();
     for (const Obstacle* const obstacle : data.obstacles) {
-      const auto found = std::find(of_case.begin(), of_case.end(), obstacle);
+      const auto found = std::ranges::find(of_case, obstacle);
       obstacles.push_back(found - of_case.begin());
     }
   }
@@ -97,7 +97,7 @@ void transfer_supports(Archive& archive, const Case& input, Supports& supports) 
     dofs = supports.dofs();
     for (const Index dof : dofs) {
       const auto same = [&](const SupportSection& section) { return section.value == supports.expression(dof); };
-      sections.push_back(std::find_if(input.supports.begin(), input.supports.end(), same) - input.supports.begin());
+      sections.push_back(std::ranges::find_if(input.supports, same) - input.supports.begin());
     }
   }
   archive.all(dofs, sections);

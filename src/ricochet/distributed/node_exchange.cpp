@@ -37,7 +37,7 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
   for (const std::vector<std::int64_t>& reply : ranks.exchange(replies)) {
     for (std::size_t i = 0; i < reply.size(); i += 2) result[static_cast<int>(reply[i + 1])].push_back(reply[i]);
   }
-  for (auto& [rank, shared] : result) std::sort(shared.begin(), shared.end());
+  for (auto& [rank, shared] : result) std::ranges::sort(shared);
   return result;
 }
 
@@ -60,7 +60,7 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
       first = std::min(first, rank);
     }
   }
-  std::sort(shared_.begin(), shared_.end());
+  std::ranges::sort(shared_);
   shared_.erase(std::unique(shared_.begin(), shared_.end()), shared_.end());
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     for (const Index node : neighbours_[i].nodes)

@@ -25,9 +25,7 @@ class NodeExchange {
   /// Copies the values of a node's owner to all ranks that share it.
   void copy_from_owners(Vector& values) const;
 
-  [[nodiscard]] bool is_owned(Index node) const {
-    return !std::binary_search(not_owned_.begin(), not_owned_.end(), node);
-  }
+  [[nodiscard]] bool is_owned(Index node) const { return !std::ranges::binary_search(not_owned_, node); }
   /// Returns the number of each node in the whole body.
   [[nodiscard]] const std::vector<std::int64_t>& numbers() const { return numbers_; }
   [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }

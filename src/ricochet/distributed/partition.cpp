@@ -45,7 +45,7 @@ Adjacency adjacency_of(const Mesh& mesh) {
     found.clear();
     for (auto at = static_cast<std::size_t>(begin[node]); at < static_cast<std::size_t>(begin[node + 1]); ++at)
       found.insert(found.end(), cell[at], cell[at] + length[at]);
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     found.erase(std::unique(found.begin(), found.end()), found.end());
     for (const Index other : found) {
       if (other != static_cast<Index>(node)) result.neighbour.push_back(static_cast<PetscInt>(other));
@@ -70,8 +70,8 @@ std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
     PetscInt *begin = nullptr, *neighbour = nullptr;
     PetscCall(PetscMalloc1(adjacency.begin.size(), &begin));
     PetscCall(PetscMalloc1(adjacency.neighbour.size(), &neighbour));
-    std::copy(adjacency.begin.begin(), adjacency.begin.end(), begin);
-    std::copy(adjacency.neighbour.begin(), adjacency.neighbour.end(), neighbour);
+    std::ranges::copy(adjacency.begin, begin);
+    std::ranges::copy(adjacency.neighbour, neighbour);
     adjacency = {};
     PetscCall(MatCreateMPIAdj(PETSC_COMM_SELF, nodes, nodes, begin, neighbour, nullptr, &graph));
     PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
@@ -116,8 +116,8 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
     std::ptrdiff_t most = 0;
     for (const Index node : nodes) {
       const int own = part[static_cast<std::size_t>(node)];
-      const std::ptrdiff_t votes = std::count_if(
-          nodes.begin(), nodes.end(), [&](Index other) { return part[static_cast<std::size_t>(other)] == own; });
+      const std::ptrdiff_t votes =
+          std::ranges::count_if(nodes, [&](Index other) { return part[static_cast<std::size_t>(other)] == own; });
       if (votes > most || (votes == most && own < best)) {
         most = votes;
         best = own;
@@ -129,8 +129,8 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
   // A part of few nodes may win no cell and then gets one of the largest part.
   for (std::size_t empty = 0; empty < count.size(); ++empty) {
     if (count[empty] > 0) continue;
-    const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
-    const auto cell = std::find(result.begin(), result.end(), largest);
+    const auto largest = static_cast<int>(std::ranges::max_element(count) - count.begin());
+    const auto cell = std::ranges::find(result, largest);
     *cell = static_cast<int>(empty);
     --count[static_cast<std::size_t>(largest)];
     ++count[empty];

@@ -85,7 +85,7 @@ void cut_mesh_nodes(const Mesh& global, Mesh& mesh) {
   for (const MeshPart& part : global.parts) {
     MeshPart& own = mesh.parts.emplace_back();
     own.name = part.name;
-    const auto begin = std::lower_bound(nodes.begin(), nodes.end(), part.first_node);
+    const auto begin = std::ranges::lower_bound(nodes, part.first_node);
     const auto end = std::lower_bound(begin, nodes.end(), part.first_node + part.node_count);
     own.first_node = begin - nodes.begin();
     own.node_count = end - begin;

@@ -71,8 +71,7 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
 }  // namespace
 
 bool has_finite_strain(const Body& body) {
-  return std::any_of(body.materials.begin(), body.materials.end(),
-                     [](const Material& material) { return !material.law->is_linear(); });
+  return std::ranges::any_of(body.materials, [](const Material& material) { return !material.law->is_linear(); });
 }
 
 IsotropicElasticity linear_law(const Body& body, const Material& material) {

@@ -68,7 +68,7 @@ class RidgeSides {
   [[nodiscard]] Eigen::Vector2d reference_point(const CellFacet& facet, int vertex) const {
     const CellShape shape = body_.space->cells[facet.block].shape;
     const std::vector<int>& nodes = facet_nodes(shape, 1)[facet.local];
-    const auto local = static_cast<int>(std::find(nodes.begin(), nodes.end(), vertex) - nodes.begin());
+    const auto local = static_cast<int>(std::ranges::find(nodes, vertex) - nodes.begin());
     return reference_position(facet_shape(shape, facet.local), {local}).head<2>();
   }
   /// Outward normal, oriented by the order of the facet's corners.
@@ -95,7 +95,7 @@ std::vector<Ridge> boundary_ridges(const Body& body, const std::vector<CellFacet
   std::vector<RidgeSide> sides;
   RidgeSides gather(body, sides);
   for (std::size_t number = 0; number < boundary.size(); ++number) gather.add(number, boundary[number]);
-  std::sort(sides.begin(), sides.end(), [](const RidgeSide& a, const RidgeSide& b) {
+  std::ranges::sort(sides, [](const RidgeSide& a, const RidgeSide& b) {
     return std::tuple(a.nodes, a.facet, a.ascends) < std::tuple(b.nodes, b.facet, b.ascends);
   });
   std::vector<Ridge> ridges;

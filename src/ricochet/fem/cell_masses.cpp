@@ -62,8 +62,7 @@ void CellMasses::for_each_inertia(const VisitInertia& visit) const {
 }
 
 bool CellMasses::has_tied(const std::vector<Index>& nodes) const {
-  return body_.tied != nullptr &&
-         std::any_of(nodes.begin(), nodes.end(), [this](Index node) { return body_.tied->is_tied(node); });
+  return body_.tied != nullptr && std::ranges::any_of(nodes, [this](Index node) { return body_.tied->is_tied(node); });
 }
 
 /// Nodes that determine the values at the nodes of a cell.
@@ -72,7 +71,7 @@ std::vector<Index> CellMasses::untied_nodes_of(const std::vector<Index>& nodes) 
   for (const Index node : nodes) {
     for (const auto& [other, weight] : body_.tied->spread({{node, 1.0}})) result.push_back(other);
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
@@ -82,8 +81,7 @@ Matrix CellMasses::tie_matrix(const std::vector<Index>& nodes, const std::vector
   Matrix result = Matrix::Zero(static_cast<Index>(nodes.size()), static_cast<Index>(followed.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const auto& [other, weight] : body_.tied->spread({{nodes[i], 1.0}}))
-      result(static_cast<Index>(i), std::lower_bound(followed.begin(), followed.end(), other) - followed.begin()) =
-          weight;
+      result(static_cast<Index>(i), std::ranges::lower_bound(followed, other) - followed.begin()) = weight;
   }
   return result;
 }

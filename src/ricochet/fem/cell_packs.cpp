@@ -23,14 +23,14 @@ struct SharedCell {
 
 int part_of_node(const NodeGraph& graph, Index node) {
   const auto& begins = graph.part_begins;
-  return static_cast<int>(std::upper_bound(begins.begin(), begins.end(), node) - begins.begin()) - 1;
+  return static_cast<int>(std::ranges::upper_bound(begins, node) - begins.begin()) - 1;
 }
 
 /// Returns the part of most of the cell's nodes, the first in case of a tie.
 int part_of_cell(const NodeGraph& graph, const CellWalk& walk) {
   std::array<int, most_node_parts> nodes{};
   for (int i = 0; i < walk.node_count(); ++i) ++nodes[static_cast<std::size_t>(part_of_node(graph, walk.nodes()[i]))];
-  return static_cast<int>(std::max_element(nodes.begin(), nodes.end()) - nodes.begin());
+  return static_cast<int>(std::ranges::max_element(nodes) - nodes.begin());
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ void CellPacks::share_out(const Body& body, const NodeGraph* graph, const std::v
     all.push_back({part, body.cell_material[static_cast<std::size_t>(cell)], walk.block(),
                    *std::min_element(walk.nodes(), walk.nodes() + walk.node_count()), static_cast<int>(walk.local())});
   }
-  std::sort(all.begin(), all.end(), [](const SharedCell& a, const SharedCell& b) { return a.key() < b.key(); });
+  std::ranges::sort(all, [](const SharedCell& a, const SharedCell& b) { return a.key() < b.key(); });
   lanes_.resize(body.space->cells.size());
   const auto width = static_cast<std::size_t>(pack_width());
   const SharedCell* last = nullptr;
@@ -110,7 +110,7 @@ void CellPacks::number_nodes(const Body& body, const NodeGraph* graph) {
     const auto is_own = [&](int node) {
       return graph == nullptr || part_of_node(*graph, node) == static_cast<int>(part);
     };
-    std::sort(nodes.begin(), nodes.end());
+    std::ranges::sort(nodes);
     const auto foreign = std::stable_partition(nodes.begin(), nodes.end(), is_own);
     own_.push_back(foreign - nodes.begin());
     for (std::size_t k = 0; k < nodes.size(); ++k)

@@ -250,7 +250,7 @@ std::vector<int> sorted_vertices(const CellBlock& cells, int d) {
   const auto lowest = [&](Index cell) { return *std::min_element(cells.cell(cell), cells.cell(cell) + count); };
   std::vector<std::pair<Index, Index>> order(static_cast<std::size_t>(cells.size()));
   for (Index cell = 0; cell < cells.size(); ++cell) order[static_cast<std::size_t>(cell)] = {lowest(cell), cell};
-  std::sort(order.begin(), order.end());
+  std::ranges::sort(order);
   std::vector<int> vertices;
   vertices.reserve(cells.nodes.size());
   for (const auto& [node, cell] : order) {

@@ -44,7 +44,7 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
   const auto compare = [&](const std::string& name, const std::vector<Index>& members) {
     if (members.empty()) return;
     const std::size_t body = body_of(members.front());
-    if (!std::all_of(members.begin(), members.end(), [&](Index cell) { return body_of(cell) == body; })) return;
+    if (!std::ranges::all_of(members, [&](Index cell) { return body_of(cell) == body; })) return;
     parts[body].push_back(name);
     if (equal_group[body].empty() && members.size() == cells[body]) equal_group[body] = name;
   };
@@ -120,7 +120,7 @@ std::vector<double> unsorted_crossing_times(const Body& body) {
 
 std::vector<double> cell_crossing_times(const Body& body) {
   std::vector<double> times = unsorted_crossing_times(body);
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   return times;
 }
 
@@ -131,7 +131,7 @@ std::vector<double> median_crossing_times(const Body& body) {
     of_material[static_cast<std::size_t>(body.cell_material[cell])].push_back(times[cell]);
   std::vector<double> result;
   for (std::vector<double>& own : of_material) {
-    std::sort(own.begin(), own.end());
+    std::ranges::sort(own);
     result.push_back(own.empty() ? 0.0 : own[own.size() / 2]);
   }
   return result;

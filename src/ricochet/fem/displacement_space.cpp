@@ -90,7 +90,7 @@ class SecondOrderNodes {
     std::vector<Index> key;
     key.reserve(support.size());
     for (const int vertex : support) key.push_back(cell[vertex]);
-    std::sort(key.begin(), key.end());
+    std::ranges::sort(key);
     const auto [entry, added] = numbers_.try_emplace(std::move(key), count_);
     if (added) ++count_;
     return entry->second;
@@ -150,7 +150,7 @@ std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector
     const CellBlock& block = space.facets[location.block];
     nodes.insert(nodes.end(), block.cell(location.local), block.cell(location.local) + block.nodes_per_cell);
   }
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }

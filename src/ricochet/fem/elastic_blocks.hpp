@@ -29,8 +29,7 @@ struct ElasticCells::Blocks {
     if (graph == nullptr) return;  // energies only, neither forces nor branches
     numbers.increment = numbers.force = numbers.strain_force = numbers.displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
-    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes))
-      numbers.end = numbers.at = numbers.displacement;
+    if (std::ranges::any_of(body.materials, relaxes)) numbers.end = numbers.at = numbers.displacement;
   }
   /// Sets up the branches for a step of this length; 0: for an instant.
   void set_branches(double step) const {

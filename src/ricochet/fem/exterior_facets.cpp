@@ -40,7 +40,7 @@ std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vec
     std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(vertices[0])];
     for (const Index node : vertices.subspan(1)) {
       const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(node)];
-      std::erase_if(common, [&](Index cell) { return !std::binary_search(others.begin(), others.end(), cell); });
+      std::erase_if(common, [&](Index cell) { return !std::ranges::binary_search(others, cell); });
     }
     result.push_back(std::move(common));
   }

@@ -79,7 +79,7 @@ class Recovery {
   std::vector<std::vector<std::pair<Index, double>>> weights(Index node) const {
     std::vector<int> materials;
     visit_cells(node, [&](Index cell) { materials.push_back(material(cell)); });
-    std::sort(materials.begin(), materials.end());
+    std::ranges::sort(materials);
     materials.erase(std::unique(materials.begin(), materials.end()), materials.end());
     std::vector<std::vector<std::pair<Index, double>>> result;
     for (const int each : materials) result.push_back(fit(node, each));
@@ -104,7 +104,7 @@ class Recovery {
         });
       }
     }
-    std::sort(patch.begin(), patch.end());
+    std::ranges::sort(patch);
     patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
   }
 

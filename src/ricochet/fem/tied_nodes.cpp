@@ -9,7 +9,7 @@ namespace ricochet {
 
 TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
     : ties_(std::move(ties)), tie_of_node_(static_cast<std::size_t>(node_count), -1) {
-  std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.node < b.node; });
+  std::ranges::sort(ties_, {}, &Tie::node);
   for (std::size_t i = 0; i < ties_.size(); ++i)
     tie_of_node_[static_cast<std::size_t>(ties_[i].node)] = static_cast<int>(i);
   // Each pass replaces nodes that are themselves tied; a chain is at most as long as there are contacts.
@@ -17,8 +17,8 @@ TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
   for (int iteration = 0;; ++iteration) {
     bool changed = false;
     for (Tie& tie : ties_) {
-      const bool follows_tied = std::any_of(tie.weights.begin(), tie.weights.end(),
-                                            [this](const auto& entry) { return is_tied(entry.first); });
+      const bool follows_tied =
+          std::ranges::any_of(tie.weights, [this](const auto& entry) { return is_tied(entry.first); });
       if (!follows_tied) continue;
       tie.weights = spread(tie.weights);
       changed = true;

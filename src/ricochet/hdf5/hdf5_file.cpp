@@ -143,7 +143,7 @@ std::int64_t Hdf5Reader::size(const std::string& name) const {
   // Vectors are also written as matrices of one column or one row.
   std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(set.space, extents.data(), nullptr);
-  if (std::count_if(extents.begin(), extents.end(), [](hsize_t n) { return n != 1; }) > 1)
+  if (std::ranges::count_if(extents, [](hsize_t n) { return n != 1; }) > 1)
     fail(name, fmt::format("has {} dimensions where one is expected", rank));
   return count;
 }
@@ -256,7 +256,7 @@ Vector Hdf5Reader::leading_reals(const std::string& name, std::int64_t used, std
   const Dataset set(*this, name);
   Vector values = numbers(set, expected_size);
   values.conservativeResize(used);
-  const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
   if (bad != values.end()) fail(name, fmt::format("entry {} is {}, which is not finite", bad - values.begin(), *bad));
   return values;
 }

@@ -168,7 +168,7 @@ std::vector<CheckpointFile> checkpoint_files(const std::string& directory) {
     const auto step = between(name, "checkpoint-", ".ckpt");
     if (step && is_digits(*step, 9, 15)) result.push_back({entry.path().string(), std::stol(std::string(*step))});
   }
-  std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+  std::ranges::sort(result, [](const auto& a, const auto& b) { return a.step < b.step; });
   return result;
 }
 
@@ -210,7 +210,7 @@ Snapshot read_checkpoint(const std::string& path) {
 
 std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
   std::vector<CheckpointFile> files = checkpoint_files(directory);
-  std::reverse(files.begin(), files.end());
+  std::ranges::reverse(files);
   for (const CheckpointFile& file : files) {
     try {
       return read_checkpoint(file.path);

@@ -89,7 +89,7 @@ std::vector<std::string> exported_contact_problems(const std::string& directory)
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, problem)) {
     if (is_problem(entry.path().filename().string())) result.push_back(entry.path().string());
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 
@@ -117,8 +117,7 @@ ContactExport::ContactExport(std::vector<StepRange> steps, std::string directory
 }
 
 bool ContactExport::is_requested(long step) const {
-  return std::any_of(steps_.begin(), steps_.end(),
-                     [&](const StepRange& range) { return range.first <= step && step <= range.last; });
+  return std::ranges::any_of(steps_, [&](const StepRange& range) { return range.first <= step && step <= range.last; });
 }
 
 void ContactExport::begin_step(long step) {

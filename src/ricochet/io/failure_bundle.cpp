@@ -59,7 +59,7 @@ std::vector<std::string> failure_files(const std::string& directory) {
     if (name.starts_with("failure-") && (name.ends_with(".ckpt") || name.ends_with(".hdf5")))
       result.push_back(entry.path().string());
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 

@@ -38,7 +38,7 @@ bool FileChangeDetector::ends_with_zeros() const {
   std::ifstream file(path_, std::ios::binary);
   file.seekg(std::max<std::int64_t>(size_ - static_cast<std::int64_t>(end.size()), 0));
   file.read(end.data(), end.size());
-  return std::all_of(end.begin(), end.end(), [](char c) { return c == '\0'; });
+  return std::ranges::all_of(end, [](char c) { return c == '\0'; });
 }
 
 void FileChangeDetector::require_unchanged() const {

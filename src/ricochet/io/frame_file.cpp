@@ -262,8 +262,7 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
       remove_pattern();
       return;
     }
-    std::sort(retained.begin(), retained.end(),
-              [](const FrameExtent& a, const FrameExtent& b) { return a.address < b.address; });
+    std::ranges::sort(retained, {}, &FrameExtent::address);
     retained.push_back({size, 0});
     copy_gaps(pattern, path_, retained, count_extent(pattern));
     // Truncation is last: if it is interrupted, the file is longer than recorded, which HDF5 can open, unlike a shorter

@@ -115,7 +115,7 @@ HistoryTable read_history(const std::string& path, bool may_grow) {
     begin = end + 1;
   }
   // The row of names may be missing: a row of numbers is not accepted as one.
-  if (std::any_of(table.names.begin(), table.names.end(), [](const auto& name) { return number_in(name); }))
+  if (std::ranges::any_of(table.names, [](const auto& name) { return number_in(name).has_value(); }))
     throw Error(
         ErrorKind::invalid_input,
         fmt::format(

@@ -90,7 +90,7 @@ void LineChecksums::require_same(const std::string& path) const {
   for (const Block& expected : blocks_) {
     block.resize(static_cast<std::size_t>(expected.length));
     if (!file.read(block.data(), expected.length)) throw_file_error(path, "read", errno);
-    const std::int64_t last = std::max(line, line + std::count(block.begin(), block.end(), '\n') - 1);
+    const std::int64_t last = std::max(line, line + std::ranges::count(block, '\n') - 1);
     if (Checksum().add(block.data(), block.size()).value() != expected.sum) {
       refuse(path,
              line == last ? fmt::format("line {} differs", line)

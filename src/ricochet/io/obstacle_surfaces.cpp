@@ -15,7 +15,7 @@ constexpr double reach = 1.0;
 
 ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
   for (const Obstacle* obstacle : problem.obstacles) {
-    const bool is_known = std::find(obstacles_.begin(), obstacles_.end(), obstacle) != obstacles_.end();
+    const bool is_known = std::ranges::find(obstacles_, obstacle) != obstacles_.end();
     if (obstacle != nullptr && !is_known) obstacles_.push_back(obstacle);
   }
   const Vector lowest = problem.nodes.rowwise().minCoeff(), highest = problem.nodes.rowwise().maxCoeff();

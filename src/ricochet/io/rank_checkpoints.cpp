@@ -87,7 +87,7 @@ std::vector<Manifest> manifests(const std::string& directory) {
     if (step && is_digits(*step, 9, 15))
       result.push_back(read_manifest(entry.path().string(), std::stol(std::string(*step))));
   }
-  std::sort(result.begin(), result.end(), [](const Manifest& a, const Manifest& b) { return a.step > b.step; });
+  std::ranges::sort(result, [](const Manifest& a, const Manifest& b) { return a.step > b.step; });
   return result;
 }
 

@@ -32,8 +32,8 @@ const ResultsFormat* find_results_format(const std::string& directory) {
   const ResultsFormat* found = nullptr;
   for (const Registration<ResultsFormat>& entry : results_format_registry().all()) {
     const std::vector<std::string>& files = entry.type.files;
-    if (std::all_of(files.begin(), files.end(),
-                    [&](const std::string& file) { return std::filesystem::exists(directory + "/" + file); }))
+    if (std::ranges::all_of(files,
+                            [&](const std::string& file) { return std::filesystem::exists(directory + "/" + file); }))
       found = &entry.type;
   }
   return found;

@@ -26,7 +26,7 @@ std::string RunSummary::mass_text() const {
 }
 
 ColumnDigest RunSummary::digest(const std::string& column) const {
-  const auto at = std::find(columns.begin(), columns.end(), column);
+  const auto at = std::ranges::find(columns, column);
   const auto i = static_cast<std::size_t>(at - columns.begin());
   return i < digests.size() ? digests[i] : ColumnDigest{};
 }
@@ -61,22 +61,19 @@ double RunSummary::delay_of(const std::string& column) const {
   const std::string quantity = dot == std::string::npos ? column : column.substr(dot);
   constexpr std::array forces{"contact_force",     ".contact_force", ".reaction", ".pressure",
                               ".nominal_pressure", ".force_",        ".moment_",  ".support_"};
-  const bool is_force =
-      column.starts_with("pair_force.") ||
-      std::any_of(forces.begin(), forces.end(), [&](const char* name) { return quantity.starts_with(name); });
+  const bool is_force = column.starts_with("pair_force.") ||
+                        std::ranges::any_of(forces, [&](const char* name) { return quantity.starts_with(name); });
   return is_force ? force_instant * step : 0.0;
 }
 
 const Impact* RunSummary::first_restitution() const {
-  const auto found = std::find_if(impacts.begin(), impacts.end(),
-                                  [](const Impact& impact) { return impact.restitution().has_value(); });
+  const auto found =
+      std::ranges::find_if(impacts, [](const Impact& impact) { return impact.restitution().has_value(); });
   return found != impacts.end() ? &*found : nullptr;
 }
 
 const Impact* RunSummary::hardest_impact() const {
-  const auto found = std::max_element(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) {
-    return a.largest_force < b.largest_force;
-  });
+  const auto found = std::ranges::max_element(impacts, {}, &Impact::largest_force);
   return found != impacts.end() ? &*found : nullptr;
 }
 
@@ -107,7 +104,7 @@ bool RunSummary::cells_turn_little_in_impacts() const {
 }
 
 bool RunSummary::small_strain_holds_in_impacts() const {
-  return cells_turn_little_in_impacts() && std::none_of(impacts.begin(), impacts.end(), is_distorted_by_rotation);
+  return cells_turn_little_in_impacts() && std::ranges::none_of(impacts, is_distorted_by_rotation);
 }
 
 std::string to_json(const RunSummary& summary) {

@@ -76,7 +76,7 @@ void describe(SummaryVisitor& visit, BudgetAtEnd& budget) {
   visit.derived("supports", part("support_work"), "supports that move");
   visit.derived("obstacles", part("obstacle_work"), "obstacles that move");
   visit.derived("loads", part("load_work"), "loads that vary");
-  const bool relaxes = std::count(run.columns.begin(), run.columns.end(), "viscous_dissipation") > 0;
+  const bool relaxes = std::ranges::count(run.columns, "viscous_dissipation") > 0;
   if (!visit.reads())
     visit.optional("relaxation", relaxes, part("viscous_dissipation", -1.0), "viscoelastic branches of materials");
 }

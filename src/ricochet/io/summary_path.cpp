@@ -13,7 +13,7 @@ namespace {
 bool allows(const Json& schema, std::string_view type) {
   const Json& types = schema.at("type");
   if (!types.is_array()) return types.get<std::string>() == type;
-  return std::any_of(types.begin(), types.end(), [&](const Json& one) { return one.get<std::string>() == type; });
+  return std::ranges::any_of(types, [&](const Json& one) { return one.get<std::string>() == type; });
 }
 
 /// Returns the paths that continue one by an entry and a rest; `rest` begins with a dot or is empty.

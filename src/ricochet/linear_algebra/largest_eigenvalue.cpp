@@ -54,7 +54,7 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
     if (!beside.empty()) next -= beside.back() * previous;
     next -= diagonal.back() * current;
     const double length = std::sqrt(dot(next, next));
-    const double largest = *std::max_element(diagonal.begin(), diagonal.end());
+    const double largest = *std::ranges::max_element(diagonal);
     // An invariant subspace is exhausted: it contains a part of every eigenvector.
     const bool exhausted = !(length > 64.0 * std::numeric_limits<double>::epsilon() * largest);
     if (bounds.products == enough || exhausted) break;
@@ -64,7 +64,7 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
   }
   // Eigen's iteration converges only for matrices scaled near 1. A power of two changes no bit.
   int exponent = 0;
-  std::frexp(*std::max_element(diagonal.begin(), diagonal.end()), &exponent);
+  std::frexp(*std::ranges::max_element(diagonal), &exponent);
   for (double& entry : diagonal) entry = std::ldexp(entry, -exponent);
   for (double& entry : beside) entry = std::ldexp(entry, -exponent);
   const auto count = static_cast<Index>(diagonal.size());

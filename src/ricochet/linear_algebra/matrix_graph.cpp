@@ -48,7 +48,7 @@ MatrixGraph::MatrixGraph(const NodePattern& pattern) : begin_(pattern.node.size(
 
 std::vector<Index> NodeDistances::ascending() const {
   std::vector<Index> result = nodes;
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 

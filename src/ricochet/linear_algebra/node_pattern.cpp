@@ -41,7 +41,7 @@ class RowOfMatrix {
       if (other > node && other < end) two_sided_.push_back(other);
     }
     for (std::vector<int>* columns : {&two_sided_, &one_sided_}) {
-      std::sort(columns->begin(), columns->end());
+      std::ranges::sort(*columns);
       columns->erase(std::unique(columns->begin(), columns->end()), columns->end());
     }
   }

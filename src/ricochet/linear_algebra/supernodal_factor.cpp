@@ -163,7 +163,7 @@ void SupernodalFactor::number_boundary(Part& part) {
   for (Index k = supernodes_[part.begin].rows; k < root.rows + root.below; ++k) {
     int& row = rows_[static_cast<std::size_t>(k)];
     if (row < beyond) continue;
-    const auto at = std::lower_bound(part.boundary.begin(), part.boundary.end(), row) - part.boundary.begin();
+    const auto at = std::ranges::lower_bound(part.boundary, row) - part.boundary.begin();
     row = static_cast<int>(part.boundary_start + at);
   }
   row_of_work_.insert(row_of_work_.end(), part.boundary.begin(), part.boundary.end());

@@ -53,7 +53,7 @@ bool CellRings::grow() {
 std::vector<Index> CellRings::nodes() const {
   std::vector<Index> result;
   for (const int cell : ring_cells_) result.insert(result.end(), nodes(cell), nodes(cell) + node_count(cell));
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }

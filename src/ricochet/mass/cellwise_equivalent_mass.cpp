@@ -130,7 +130,7 @@ SparseMatrix CellwiseBuilder::build() {
 /// each elimination adds the removed matrix r rᵀ/m_cc, with the column r of the contact node, to R_T.
 void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
   const auto count = static_cast<Index>(nodes.size());
-  if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }))
+  if (std::ranges::none_of(nodes, [this](Index node) { return is_contact(node); }))
     return keep_inertia(nodes, inertia, weight);
   ContactCell contact_cell;
   contact_cell.cell = cell;
@@ -357,7 +357,7 @@ void CellwiseBuilder::refuse(const ContactCell& contact_cell) {
   while (rings_.grow()) continue;
   const std::vector<Index> body = rings_.nodes();
   std::vector<Index> massive;
-  std::copy_if(body.begin(), body.end(), std::back_inserter(massive), [this](Index n) { return !is_contact(n); });
+  std::ranges::copy_if(body, std::back_inserter(massive), [this](Index n) { return !is_contact(n); });
   const int* const nodes = rings_.nodes(contact_cell.cell);
   const Index node =
       *std::find_if(nodes, nodes + rings_.node_count(contact_cell.cell), [this](Index n) { return is_contact(n); });

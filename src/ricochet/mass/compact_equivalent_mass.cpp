@@ -86,7 +86,7 @@ SparseMatrix Builder::build() {
 void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
   ++number_;
   const auto count = static_cast<Index>(nodes.size());
-  if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); })) {
+  if (std::ranges::none_of(nodes, [this](Index node) { return is_contact(node); })) {
     for (Index j = 0; j < count; ++j) {
       for (Index i = 0; i < count; ++i)
         add_value(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], mass(i, j));
@@ -118,7 +118,7 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
     // Far away, a few additional donors make no difference.
     if (donors.size() > (ring <= many_rings ? tried : tried + tried / 4)) {
       tried = donors.size();
-      std::sort(donors.begin(), donors.end());
+      std::ranges::sort(donors);
       CellExtension extension = extend_from(nodes, donors);
       if (extension.weights < best.weights) std::swap(best, extension);
     }
@@ -166,7 +166,7 @@ std::vector<Index> Builder::massive_nodes_of(const std::vector<Index>& nodes) co
   for (const Index node : nodes) {
     if (!is_contact(node)) result.push_back(node);
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
@@ -200,7 +200,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   double largest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!is_contact(nodes[i])) {
-      const auto own = std::lower_bound(extension.donors.begin(), extension.donors.end(), nodes[i]);
+      const auto own = std::ranges::lower_bound(extension.donors, nodes[i]);
       extension.rows(static_cast<Index>(i), own - extension.donors.begin()) = 1.0;
       continue;
     }
@@ -215,7 +215,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
 }
 
 void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& body) const {
-  const Index node = *std::find_if(nodes.begin(), nodes.end(), [this](Index n) { return is_contact(n); });
+  const Index node = *std::ranges::find_if(nodes, [this](Index n) { return is_contact(n); });
   throw Error(
       ErrorKind::invalid_input,
       fmt::format(

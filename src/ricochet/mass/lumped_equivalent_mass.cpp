@@ -193,7 +193,7 @@ void require_span(const MassInput& input, const MassBody& body, const Moments& m
   for (Index i = 0; i < mass.size(); ++i) {
     if (mass[i] > 0.0) massive.push_back(body.nodes[static_cast<std::size_t>(i)]);
   }
-  std::sort(massive.begin(), massive.end());
+  std::ranges::sort(massive);
   refuse(input, body, describe_massive_nodes(*input.nodes, body.nodes, massive));
 }
 

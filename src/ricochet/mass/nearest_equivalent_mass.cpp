@@ -38,9 +38,9 @@ void check_conditions(const MassInput& input, const MassFrames& frames, const Sp
     if (moment_defect(mass, *input.consistent, frames, body) <= 1e-10) continue;
     std::vector<Index> massive;
     for (const Index node : body.nodes) {
-      if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) massive.push_back(node);
+      if (!std::ranges::binary_search(input.contact_nodes, node)) massive.push_back(node);
     }
-    std::sort(massive.begin(), massive.end());
+    std::ranges::sort(massive);
     throw Error(
         ErrorKind::invalid_input,
         fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "

@@ -76,7 +76,7 @@ class CongruenceRow {
       const SparseRow& row = products_[static_cast<std::size_t>(entry.node)];
       for (std::size_t k = 0; k < row.columns.size(); ++k) add(row.columns[k], entry.weight * row.values[k]);
     }
-    std::sort(columns_.begin(), columns_.end());
+    std::ranges::sort(columns_);
     return columns_;
   }
   [[nodiscard]] double value(int column) const { return values_[column]; }
@@ -203,7 +203,7 @@ bool extrapolation_weights(const Points& nodes, const Vector& node_weights, cons
 
 [[noreturn]] void refuse_node(const MassInput& input, Index node, const std::vector<Index>& body,
                               std::vector<Index> massive) {
-  std::sort(massive.begin(), massive.end());
+  std::ranges::sort(massive);
   const bool flat = massive.empty() || !degeneracy(*input.nodes, body, massive).empty();
   throw Error(ErrorKind::invalid_input,
               fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved "

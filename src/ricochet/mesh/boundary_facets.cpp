@@ -18,12 +18,12 @@ Key key_of(const Index* cell, const std::vector<int>& local) {
   Key key{-1, -1, -1, -1};
   const std::size_t count = local.size();
   for (std::size_t k = 0; k < count; ++k) key[4 - count + k] = cell[local[k]];
-  std::sort(key.begin(), key.end());
+  std::ranges::sort(key);
   return key;
 }
 
 Index smallest_vertex(const Key& key) {
-  return *std::find_if(key.begin(), key.end(), [](Index vertex) { return vertex >= 0; });
+  return *std::ranges::find_if(key, [](Index vertex) { return vertex >= 0; });
 }
 
 bool comes_before(const CellFacet& a, const CellFacet& b) {
@@ -74,7 +74,7 @@ void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& v
       const std::vector<int>& local = facet_nodes(block.shape, 1)[sorted[i].local];
       bucket.emplace_back(key_of(block.cell(sorted[i].cell), local), sorted[i]);
     }
-    std::sort(bucket.begin(), bucket.end(), by_key_and_cell);
+    std::ranges::sort(bucket, by_key_and_cell);
     for (std::size_t i = 0; i < bucket.size();) {
       equal.clear();
       const Key& key = bucket[i].first;
@@ -96,9 +96,9 @@ bool are_opposite(const std::vector<CellBlock>& cells, const CellFacet& one, con
   std::vector<Index> first = outward_vertices(one);
   std::vector<Index> second = outward_vertices(other);
   if (first.size() == 2) return first[0] == second[1];
-  std::reverse(second.begin(), second.end());
-  std::rotate(first.begin(), std::min_element(first.begin(), first.end()), first.end());
-  std::rotate(second.begin(), std::min_element(second.begin(), second.end()), second.end());
+  std::ranges::reverse(second);
+  std::rotate(first.begin(), std::ranges::min_element(first), first.end());
+  std::rotate(second.begin(), std::ranges::min_element(second), second.end());
   return first == second;
 }
 
@@ -109,7 +109,7 @@ std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
   for_each_distinct_facet(cells, [&](const std::vector<CellFacet>& equal) {
     if (equal.size() == 1) result.push_back(equal.front());
   });
-  std::sort(result.begin(), result.end(), comes_before);
+  std::ranges::sort(result, comes_before);
   return result;
 }
 
@@ -122,7 +122,7 @@ std::vector<SharedFacet> folded_facets(const std::vector<CellBlock>& cells) {
       }
     }
   });
-  std::sort(result.begin(), result.end(), [](const SharedFacet& a, const SharedFacet& b) {
+  std::ranges::sort(result, [](const SharedFacet& a, const SharedFacet& b) {
     return comes_before(a.first, b.first) || (!comes_before(b.first, a.first) && comes_before(a.second, b.second));
   });
   return result;

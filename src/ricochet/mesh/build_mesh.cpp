@@ -94,7 +94,7 @@ class EntityNamer {
 
 bool has_groups(const RawMesh& raw) {
   return !raw.physical_names.empty() ||
-         std::any_of(raw.elements.begin(), raw.elements.end(), [](const RawElements& e) { return !e.groups.empty(); });
+         std::ranges::any_of(raw.elements, [](const RawElements& e) { return !e.groups.empty(); });
 }
 
 /// Checks that a mesh of dimension 2 lies in a plane z = constant.
@@ -140,7 +140,7 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
   } else {
     sorted_.reserve(tags.size());
     for (std::size_t i = 0; i < tags.size(); ++i) sorted_.emplace_back(tags[i], static_cast<Index>(i));
-    std::sort(sorted_.begin(), sorted_.end());
+    std::ranges::sort(sorted_);
     for (std::size_t i = 1; i < sorted_.size(); ++i) {
       if (sorted_[i].first == sorted_[i - 1].first) repeated.add(sorted_[i].first);
     }
@@ -149,7 +149,7 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
 }
 
 Index NodeNumbering::find_sorted(std::int64_t tag) const {
-  const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair<std::int64_t, Index>{tag, 0});
+  const auto found = std::ranges::lower_bound(sorted_, std::pair<std::int64_t, Index>{tag, 0});
   return found != sorted_.end() && found->first == tag ? found->second : -1;
 }
 

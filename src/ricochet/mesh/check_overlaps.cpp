@@ -47,9 +47,8 @@ std::vector<std::vector<Cone>> cones_at_vertices(CellShape shape, int degree) {
     for (const int vertex : facet) {
       const Cone& all = edges[static_cast<std::size_t>(vertex)];
       Cone cone{all.front()};
-      std::copy_if(all.begin(), all.end(), std::back_inserter(cone), [&facet](const Edge& edge) {
-        return std::find(facet.begin(), facet.end(), edge.end) != facet.end();
-      });
+      std::ranges::copy_if(all, std::back_inserter(cone),
+                           [&facet](const Edge& edge) { return std::ranges::find(facet, edge.end) != facet.end(); });
       const bool has_first = cone.size() > 1 && cone[1].end == cone[0].end;
       if (!has_first) result[static_cast<std::size_t>(vertex)].push_back(std::move(cone));
     }

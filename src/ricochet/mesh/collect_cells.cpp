@@ -104,7 +104,7 @@ std::int64_t tag_of(const std::vector<CellBlock>& blocks, Index number) {
 
 void sort_members(const std::vector<CellBlock>& blocks, const std::string& source, Group& group) {
   std::vector<Index>& members = group.members;
-  if (!std::is_sorted(members.begin(), members.end())) std::sort(members.begin(), members.end());
+  if (!std::ranges::is_sorted(members)) std::ranges::sort(members);
   Offenders repeated;
   for (std::size_t i = 1; i < members.size(); ++i) {
     if (members[i] == members[i - 1]) repeated.add(tag_of(blocks, members[i]));
@@ -132,7 +132,7 @@ std::vector<CellBlock> collect_cells(std::span<const RawElements* const> element
     for (const RawElements* part : parts) {
       std::vector<std::vector<Index>*> members;
       for (Group& group : mesh.groups) {
-        const bool in_group = std::binary_search(part->groups.begin(), part->groups.end(), group.tag);
+        const bool in_group = std::ranges::binary_search(part->groups, group.tag);
         if (in_group && group.dimension == dimension(shape)) members.push_back(&group.members);
       }
       collector.add(*part, members, first);

@@ -38,7 +38,7 @@ Json type_of(CellShape shape, int degree) {
   Json facets = Json::array();
   for (const VertexSet& facet : cell.abaqus_facets) {
     const auto same_size = [&](const VertexSet& each) { return each.size() == facet.size(); };
-    const auto like = std::find_if(cell.facets.begin(), cell.facets.end(), same_size) - cell.facets.begin();
+    const auto like = std::ranges::find_if(cell.facets, same_size) - cell.facets.begin();
     const CellShape own = facet_shape(shape, static_cast<std::size_t>(like));
     facets.push_back(Json{{"kind", file_type(own, degree).meshio_name},
                           {"nodes", nodes_of_facet_in_file(shape, own, degree, facet)}});
@@ -51,7 +51,7 @@ Json type_of(CellShape shape, int degree) {
           {"order", order},
           {"facets", facets},
           {"exodus_sides", cell.exodus_sides},
-          {"has_face_nodes", std::any_of(points.begin(), points.end(), is_in_face)}};
+          {"has_face_nodes", std::ranges::any_of(points, is_in_face)}};
 }
 
 }  // namespace

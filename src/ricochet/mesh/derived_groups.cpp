@@ -30,8 +30,8 @@ std::vector<Index> numbers_up_to(Index count) {
 /// Index of the block of a shape, created if missing; blocks stay in the order of the shapes, as the reader leaves
 /// them.
 std::size_t block_of(Mesh& mesh, CellShape shape) {
-  const auto found = std::find_if(mesh.facets.begin(), mesh.facets.end(),
-                                  [shape](const CellBlock& block) { return block.shape >= shape; });
+  const auto found =
+      std::ranges::find_if(mesh.facets, [shape](const CellBlock& block) { return block.shape >= shape; });
   const auto index = static_cast<std::size_t>(found - mesh.facets.begin());
   if (found == mesh.facets.end() || found->shape != shape)
     mesh.facets.insert(found, CellBlock{shape, node_count(shape, mesh.degree), {}, {}});
@@ -62,7 +62,7 @@ std::vector<Index> add_facets(const Mesh& mesh, const std::vector<CellFacet>& fa
       block.tags.push_back(0);
     }
   }
-  std::sort(members.begin(), members.end());
+  std::ranges::sort(members);
   return members;
 }
 
@@ -71,8 +71,7 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   for (Group& group : mesh.groups) {
     if (group.dimension != dimension) continue;
     for (Index& member : group.members) {
-      const auto block =
-          static_cast<std::size_t>(std::upper_bound(before.begin(), before.end(), member) - before.begin()) - 1;
+      const auto block = static_cast<std::size_t>(std::ranges::upper_bound(before, member) - before.begin()) - 1;
       member += after[block] - before[block];
     }
   }
@@ -147,7 +146,7 @@ void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<
     const std::vector<Index>& members = mesh.group(part, dimension).members;
     result.members.insert(result.members.end(), members.begin(), members.end());
   }
-  std::sort(result.members.begin(), result.members.end());
+  std::ranges::sort(result.members);
   result.members.erase(std::unique(result.members.begin(), result.members.end()), result.members.end());
   mesh.groups.push_back(std::move(result));
 }

@@ -20,11 +20,11 @@ std::vector<Child> parts_of_cell(CellShape shape, int degree) {
   if (degree == 1) return {{shape, node_vertices(shape, 1)}};
   std::vector<Child> result = cell.subdivisions.front().children;
   const auto rank = [&](const Child& child) {
-    return std::find_if(cell.file_vertices.begin(), cell.file_vertices.end(), [&](int vertex) {
-      return std::find(child.vertices.begin(), child.vertices.end(), VertexSet{vertex}) != child.vertices.end();
+    return std::ranges::find_if(cell.file_vertices, [&](int vertex) {
+      return std::ranges::find(child.vertices, VertexSet{vertex}) != child.vertices.end();
     });
   };
-  std::stable_sort(result.begin(), result.end(), [&](const Child& a, const Child& b) { return rank(a) < rank(b); });
+  std::ranges::stable_sort(result, [&](const Child& a, const Child& b) { return rank(a) < rank(b); });
   return result;
 }
 
@@ -40,7 +40,7 @@ void orient_piece(CellShape shape, VertexSets& corners) {
     const Eigen::Vector3d a = at(one), b = at(other);
     return std::tie(a[1], a[0]) < std::tie(b[1], b[0]);
   };
-  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_lower), corners.end());
+  std::rotate(corners.begin(), std::ranges::min_element(corners, is_lower), corners.end());
 }
 
 std::vector<FlatPiece> make_pieces(CellShape shape, int degree) {

@@ -85,8 +85,7 @@ class BlockMerger {
 
  private:
   [[nodiscard]] std::size_t block_of(CellShape shape) const {
-    const auto found =
-        std::find_if(merged_.begin(), merged_.end(), [shape](const CellBlock& block) { return block.shape == shape; });
+    const auto found = std::ranges::find_if(merged_, [shape](const CellBlock& block) { return block.shape == shape; });
     return static_cast<std::size_t>(found - merged_.begin());
   }
 
@@ -112,12 +111,12 @@ class BlockMerger {
 void add_groups(const NamedMesh& part, const BlockMerger& cells, const BlockMerger& facets, std::size_t number,
                 Mesh& mesh) {
   for (const Group& group : part.mesh.groups) {
-    const auto same = std::count_if(mesh.groups.begin(), mesh.groups.end(),
-                                    [&](const Group& other) { return other.dimension == group.dimension; });
+    const auto same =
+        std::ranges::count_if(mesh.groups, [&](const Group& other) { return other.dimension == group.dimension; });
     Group merged{mesh.parts.back().group_name(group.name), static_cast<int>(same) + 1, group.dimension, {}};
     const BlockMerger& numbers = group.dimension == mesh.dimension ? cells : facets;
     for (const Index member : group.members) merged.members.push_back(numbers.number(number, member));
-    std::sort(merged.members.begin(), merged.members.end());
+    std::ranges::sort(merged.members);
     mesh.groups.push_back(std::move(merged));
   }
 }
@@ -125,7 +124,7 @@ void add_groups(const NamedMesh& part, const BlockMerger& cells, const BlockMerg
 std::vector<Index> cells_of(const NamedMesh& part, const BlockMerger& cells, std::size_t number) {
   std::vector<Index> result;
   for (Index cell = 0; cell < part.mesh.cell_count(); ++cell) result.push_back(cells.number(number, cell));
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 

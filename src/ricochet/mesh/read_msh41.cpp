@@ -25,7 +25,7 @@ std::vector<int> read_physical_tags(Reader& reader) {
     }
     tags.push_back(std::abs(tag));
   }
-  std::sort(tags.begin(), tags.end());
+  std::ranges::sort(tags);
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   return tags;
 }

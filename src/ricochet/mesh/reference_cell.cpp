@@ -14,14 +14,14 @@ namespace {
 
 template <class Value>
 int index_of(const std::vector<Value>& all, const Value& one) {
-  return static_cast<int>(std::find(all.begin(), all.end(), one) - all.begin());
+  return static_cast<int>(std::ranges::find(all, one) - all.begin());
 }
 
 /// Renumbers vertices and sorts them.
 VertexSet renumbered(const VertexSet& set, const std::vector<int>& numbers) {
   VertexSet result;
   for (const int vertex : set) result.push_back(numbers[static_cast<std::size_t>(vertex)]);
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 
@@ -67,7 +67,7 @@ VertexSets make_outward_facet_vertices(CellShape shape) {
     const Eigen::Vector3d across = around.size() == 2
                                        ? Eigen::Vector3d::UnitZ()
                                        : Eigen::Vector3d(reference_position(shape, {around.back()}) - first);
-    if (along.cross(across).dot(first - centre) < 0.0) std::reverse(around.begin(), around.end());
+    if (along.cross(across).dot(first - centre) < 0.0) std::ranges::reverse(around);
   }
   return result;
 }
@@ -137,7 +137,7 @@ int node_count(CellShape shape, int degree) {
 }
 
 int node_at_mean(CellShape shape, std::vector<int> vertices) {
-  std::sort(vertices.begin(), vertices.end());
+  std::ranges::sort(vertices);
   return index_of(node_vertices(shape, 2), vertices);
 }
 

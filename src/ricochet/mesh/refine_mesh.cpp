@@ -170,7 +170,7 @@ std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const 
       first += block.size();
     }
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 

@@ -47,7 +47,7 @@ void check_element_tags(const RawMesh& raw, const std::string& source) {
   }
   if (not_positive.any())
     fail_mesh(source, fmt::format("element numbers must be positive; found {}", not_positive.text("element")));
-  if (!std::is_sorted(tags.begin(), tags.end())) std::sort(tags.begin(), tags.end());
+  if (!std::ranges::is_sorted(tags)) std::ranges::sort(tags);
   Offenders repeated;
   for (std::size_t i = 1; i < tags.size(); ++i) {
     if (tags[i] == tags[i - 1] && (i == 1 || tags[i - 2] != tags[i])) repeated.add(tags[i]);

@@ -143,7 +143,7 @@ void report_supports_at_ties(const Model& model, const std::map<Index, Expressio
     for (int k = 0; k < d; ++k) {
       const auto own = dofs.find(tie.node * d + k);
       if (own == dofs.end()) continue;
-      const bool is_supported = std::all_of(tie.weights.begin(), tie.weights.end(), [&](const auto& entry) {
+      const bool is_supported = std::ranges::all_of(tie.weights, [&](const auto& entry) {
         const Index dof = entry.first * d + k;
         return std::abs(entry.second) < 1e-12 ||
                (model.problem.supports.contains(dof) && model.problem.supports.expression(dof) == own->second);

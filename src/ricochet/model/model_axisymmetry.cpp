@@ -26,7 +26,7 @@ void refuse_radial(const Case& input, const std::string& key_path, double radial
 }
 
 void refuse_spin(const Case& input, const MotionSection& motion) {
-  const bool spins = std::any_of(motion.spin.begin(), motion.spin.end(), [](double rate) { return rate != 0.0; });
+  const bool spins = std::ranges::any_of(motion.spin, [](double rate) { return rate != 0.0; });
   if (!spins) return;
   refuse(input, motion.section + ".spin",
          "an axisymmetric body cannot rotate in the plane of its section (and a spin about its axis is not part of the "

@@ -44,7 +44,7 @@ class PairFinder {
     std::vector<std::vector<Index>> surfaces(static_cast<std::size_t>(bodies_.count));
     for (const Index facet : of_all.facets) {
       const std::vector<Index> nodes = facet_nodes(model_.space, {facet});
-      if (std::any_of(nodes.begin(), nodes.end(), [&](Index node) { return tied_.contains(node); })) continue;
+      if (std::ranges::any_of(nodes, [&](Index node) { return tied_.contains(node); })) continue;
       surfaces[static_cast<std::size_t>(body_of(nodes.front()))].push_back(facet);
     }
     const std::size_t before = contacts.size();

@@ -30,7 +30,7 @@ void require_ground(const Case& input, const ObstacleSection& section, const std
     if (!is_rotation && static_cast<Index>(k) >= dimension) continue;
     const bool has_spring =
         is_rotation ? section.rotation_spring > 0.0 : k < section.spring.size() && section.spring[k] > 0.0;
-    const bool is_supported = std::find(section.hold.begin(), section.hold.end(), motions[k]) != section.hold.end();
+    const bool is_supported = std::ranges::find(section.hold, motions[k]) != section.hold.end();
     if (has_spring || is_supported) continue;
     refuse(input, key,
            fmt::format("initial.displacement = \"static\" requires a restraint of \"{}\" against {}, because contact "
@@ -115,7 +115,7 @@ void support_free_bodies(const Case& input, Model& model) {
   for_each_free_body(input, model, [&](const ObstacleSection& section, const FreeMotion& body, const std::string& key) {
     const std::vector<std::string> axes{"x", "y", "z"};
     for (const std::string& direction : section.hold) {
-      const auto axis = static_cast<Index>(std::find(axes.begin(), axes.end(), direction) - axes.begin());
+      const auto axis = static_cast<Index>(std::ranges::find(axes, direction) - axes.begin());
       if (axis < 3 && axis >= d) refuse(input, key + ".hold", "there is no direction \"z\" in two dimensions");
       if (axis < 3) model.problem.supports.add(body.centre_node() * d + axis, still);
       for (Index k = 0; axis == 3 && k < d; ++k) model.problem.supports.add(body.rotation_node() * d + k, still);

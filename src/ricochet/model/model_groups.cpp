@@ -57,7 +57,7 @@ class GroupCompleter {
   void require_any(const std::string& key_path, const std::string& group) {
     const std::vector<std::string> names = names_in(group);
     const auto are_groups = [&](int dimension) {
-      return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+      return std::ranges::all_of(names, [&](const std::string& name) {
         return is_built_in_group(mesh_, name, dimension) || mesh_.find_group(name, dimension) != nullptr;
       });
     };
@@ -100,14 +100,14 @@ class GroupCompleter {
     }
     if (!fitting.empty()) {
       add_union_of_groups(mesh_, name, fitting, facets);
-    } else if (std::find(cells.begin(), cells.end(), 1) != cells.end()) {
+    } else if (std::ranges::find(cells, 1) != cells.end()) {
       add_boundary_of_cells(mesh_, name, cells);
     }
   }
 
   void add_union(const std::string& key_path, const std::string& group, const std::vector<std::string>& names,
                  int dimension) {
-    const bool made_before = std::find(unions_.begin(), unions_.end(), std::pair{group, dimension}) != unions_.end();
+    const bool made_before = std::ranges::find(unions_, std::pair{group, dimension}) != unions_.end();
     if (!made_before && mesh_.find_group(group, dimension) != nullptr) {
       problems_.add(
           input_.where(key_path),

@@ -25,7 +25,7 @@ constexpr double mean_from = 0.4, locks_from = 0.45 * (1.0 - 1e-9);
 /// quadrature point do not.
 bool has_cells_with_mean(const Case& input, const Mesh& mesh) {
   const auto is_of_simplices = [](const CellBlock& block) { return is_simplex(block.shape); };
-  return input.mesh.degree > 1 || !std::all_of(mesh.cells.begin(), mesh.cells.end(), is_of_simplices);
+  return input.mesh.degree > 1 || !std::ranges::all_of(mesh.cells, is_of_simplices);
 }
 
 void choose_dilatation(const Case& input, std::size_t i, Model& model) {

@@ -35,8 +35,8 @@ void require_mesh_files(const Case& input) {
 namespace {
 
 Mesh read_part(const Case& input, const CaseMeshFile& file) {
-  const bool bodies_touch = std::any_of(input.contacts.begin(), input.contacts.end(),
-                                        [](const ContactSection& contact) { return contact.between_bodies(); });
+  const bool bodies_touch =
+      std::ranges::any_of(input.contacts, [](const ContactSection& contact) { return contact.between_bodies(); });
   MeshFile requested = file.file;
   requested.bodies_may_touch = bodies_touch;
   const auto read = [&] {

@@ -140,7 +140,7 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
 }
 
 bool is_any_positive(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+  return std::ranges::any_of(values, [](double value) { return value > 0.0; });
 }
 
 /// Refuses stiffness damping at finite strain: the forces Cη U̇ do not vanish for a rotating body.
@@ -278,7 +278,7 @@ void add_uniform(const std::vector<Expression>& value,
 
 void add_force(const std::vector<Expression>& value, const std::function<void(const ForceDensity&, Vector&)>& integrate,
                Loads& loads, Index dofs) {
-  const auto any = [&](auto property) { return std::any_of(value.begin(), value.end(), property); };
+  const auto any = [&](auto property) { return std::ranges::any_of(value, property); };
   const bool varies_in_time = any([](const Expression& e) { return e.depends_on_time(); });
   if (!any([](const Expression& e) { return e.depends_on_position(); }))
     return add_uniform(value, integrate, loads, dofs);

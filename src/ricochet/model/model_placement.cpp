@@ -46,7 +46,7 @@ Points boundary_nodes(const Mesh& mesh) {
     const std::vector<Index> nodes = nodes_of_facet(mesh.cells, facet);
     numbers.insert(numbers.end(), nodes.begin(), nodes.end());
   }
-  std::sort(numbers.begin(), numbers.end());
+  std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   Points nodes(mesh.dimension, static_cast<Index>(numbers.size()));
   for (std::size_t i = 0; i < numbers.size(); ++i) nodes.col(static_cast<Index>(i)) = mesh.nodes.col(numbers[i]);
@@ -57,7 +57,7 @@ Points boundary_nodes(const Mesh& mesh) {
 /// the normal at the nearest node. Axisymmetric bodies stay on their axis.
 SpaceVector direction_of(const Case& input, const std::string& key, const Obstacle& obstacle, const Nearest& nearest) {
   const std::vector<double>& gravity = input.load.gravity;
-  const bool falls = std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0.0; });
+  const bool falls = std::ranges::any_of(gravity, [](double g) { return g != 0.0; });
   SpaceVector direction = obstacle.normal(nearest.position);
   if (!obstacle.shape().is_flat() && falls) direction = -vector_of(gravity).stableNormalized();
   if (!is_axisymmetric(input)) return direction;

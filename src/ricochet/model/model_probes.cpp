@@ -61,7 +61,7 @@ HistoryBodies bodies_of_history(const Model& model) {
     std::string label = label_of(names[static_cast<std::size_t>(body)], body);
     // The name of a part may be a number; no other body may then use it.
     if (label == std::to_string(body) && used_names.contains(label)) label = "body_" + label;
-    while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
+    while (std::ranges::find(result.labels, label) != result.labels.end()) label += "_";
     result.labels.push_back(std::move(label));
   }
   result.of_node = bodies.of_node;
@@ -70,9 +70,8 @@ HistoryBodies bodies_of_history(const Model& model) {
 
 /// Returns the number of pairs of the same [[contact]].
 std::size_t count_of_entry(const Model& model, std::size_t number) {
-  return static_cast<std::size_t>(
-      std::count_if(model.contacts.begin(), model.contacts.end(),
-                    [&](const ModelContact& contact) { return contact.entry == model.contacts[number].entry; }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      model.contacts, [&](const ModelContact& contact) { return contact.entry == model.contacts[number].entry; }));
 }
 
 }  // namespace

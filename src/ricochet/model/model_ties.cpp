@@ -93,7 +93,7 @@ class TieCollection {
   [[nodiscard]] bool is_tied(Index node) const { return tied_by_[static_cast<std::size_t>(node)] >= 0; }
   /// Returns true if one of these nodes is the node itself or follows it.
   [[nodiscard]] bool leads_to(const TiedNodes::Weights& weights, Index node) const {
-    return std::any_of(weights.begin(), weights.end(), [&](const auto& entry) {
+    return std::ranges::any_of(weights, [&](const auto& entry) {
       const auto at = tie_index_.find(entry.first);
       return entry.first == node || (at != tie_index_.end() && leads_to(ties_[at->second].weights, node));
     });

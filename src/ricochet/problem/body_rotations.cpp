@@ -20,9 +20,8 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     for (const Index node : members) {
       for (int k = 0; k < d; ++k) supported[static_cast<std::size_t>(k)] |= problem.supports.contains(node * d + k);
     }
-    const auto count = std::count(supported.begin(), supported.end(), true);
-    if (count == 1 && d == 3)
-      body.axis = static_cast<int>(std::find(supported.begin(), supported.end(), true) - supported.begin());
+    const auto count = std::ranges::count(supported, true);
+    if (count == 1 && d == 3) body.axis = static_cast<int>(std::ranges::find(supported, true) - supported.begin());
     for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
     if (!problem.axisymmetric && (count == 0 || body.axis >= 0)) {
       const auto size = static_cast<Index>(members.size());

@@ -27,7 +27,7 @@ std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::
   }
   NodeGraph graph = cells_at_nodes(graph_, *body_.space, selected);
   std::vector<int> cells = graph.cells;
-  std::sort(cells.begin(), cells.end());
+  std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return std::make_shared<FiniteElasticity>(body_, std::move(graph), std::move(cells));
 }

@@ -38,7 +38,7 @@ bool Supports::add(Index dof, const Expression& value) {
 void Supports::finish() {
   std::vector<std::size_t> order(dofs_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) { return dofs_[a] < dofs_[b]; });
+  std::ranges::sort(order, [this](std::size_t a, std::size_t b) { return dofs_[a] < dofs_[b]; });
   std::vector<Index> dofs;
   std::vector<std::size_t> expression;
   for (const std::size_t i : order) {

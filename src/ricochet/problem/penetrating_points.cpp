@@ -21,7 +21,7 @@ double number_of(const SemidiscreteProblem& problem, Index point) {
 std::vector<double> message_of(const SemidiscreteProblem& problem, const Vector& gap,
                                const std::vector<Index>& points) {
   if (points.empty()) return {0.0};
-  const Index deepest = *std::min_element(points.begin(), points.end(), [&](Index a, Index b) {
+  const Index deepest = *std::ranges::min_element(points, [&](Index a, Index b) {
     return gap[a] != gap[b] ? gap[a] < gap[b] : number_of(problem, a) < number_of(problem, b);
   });
   Vector position = Vector::Zero(problem.dimension);

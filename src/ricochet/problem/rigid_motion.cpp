@@ -60,7 +60,7 @@ void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness
   std::vector<std::vector<Index>> components = graph_components(MatrixGraph(stiffness, static_cast<int>(nodes.rows())));
   if (components.size() > 1) body_of_node_.resize(static_cast<std::size_t>(nodes.cols()));
   for (std::vector<Index>& members : components) {
-    std::sort(members.begin(), members.end());
+    std::ranges::sort(members);
     const auto number = static_cast<int>(bodies_.size());
     bodies_.push_back(make_body(nodes, members));
     for (const Index node : members) {

@@ -23,14 +23,14 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 }  // namespace
 
 bool SemidiscreteProblem::has_rotating_obstacles() const {
-  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle* obstacle) {
+  return std::ranges::any_of(obstacles, [](const Obstacle* obstacle) {
     return obstacle != nullptr && (obstacle->rotates() || obstacle->spins());
   });
 }
 
 bool SemidiscreteProblem::has_moving_obstacles() const {
-  return std::any_of(obstacles.begin(), obstacles.end(),
-                     [](const Obstacle* obstacle) { return obstacle != nullptr && obstacle->moves(); });
+  return std::ranges::any_of(obstacles,
+                             [](const Obstacle* obstacle) { return obstacle != nullptr && obstacle->moves(); });
 }
 
 void SemidiscreteProblem::gaps(const Vector& displacement, double time, Vector& gap) const {

@@ -54,9 +54,8 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
     if (!(*options.time >= times.front() - rounding && *options.time <= times.back() + rounding))
       refuse_animation(fmt::format("--at {:g}: the frames of {} cover times from {:.9g} to {:.9g}", *options.time,
                                    run.directory, times.front(), times.back()));
-    const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
-      return std::abs(a - *options.time) < std::abs(b - *options.time);
-    });
+    const auto nearest = std::ranges::min_element(
+        times, [&](double a, double b) { return std::abs(a - *options.time) < std::abs(b - *options.time); });
     return {static_cast<std::size_t>(nearest - times.begin())};
   }
   std::vector<std::size_t> frames;

@@ -18,7 +18,7 @@ constexpr std::array contact_names{"contact_pressure", "friction_traction",     
                                    "contact_status",   "nominal_contact_pressure", "nominal_friction_traction"};
 
 bool is_contact(const std::string& name) {
-  return std::find(contact_names.begin(), contact_names.end(), name) != contact_names.end();
+  return std::ranges::find(contact_names, name) != contact_names.end();
 }
 
 /// Excludes tensors, which a page does not show, and contact fields, which have a part of their own.
@@ -132,14 +132,13 @@ void BodyFrames::store_displacement(const std::vector<float>& field) {
 }
 
 void BodyFrames::store_contact(const ResultField& field, const std::vector<float>& values) {
-  Values& own = *std::find_if(contact_.begin(), contact_.end(), [&](const Values& v) { return v.name == field.name; });
+  Values& own = *std::ranges::find_if(contact_, [&](const Values& v) { return v.name == field.name; });
   for (const Index node : line_.nodes) own.values.push_back(magnitude(values, field.components, node));
 }
 
 void BodyFrames::store_field(const ResultField& field, const std::vector<float>& values) {
   for (Part* part : {&outside_, &inside_}) {
-    Values& own =
-        *std::find_if(part->fields.begin(), part->fields.end(), [&](const Values& v) { return v.name == field.name; });
+    Values& own = *std::ranges::find_if(part->fields, [&](const Values& v) { return v.name == field.name; });
     if (field.on_nodes) {
       for (const Index node : part->nodes) own.values.push_back(magnitude(values, field.components, node));
     } else {

@@ -68,7 +68,7 @@ ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>&
       left.erase(node);
       before = node;
       const std::vector<Index>& around = neighbours.at(node);
-      const auto next = std::find_if(around.begin(), around.end(), [&left](Index n) { return left.contains(n); });
+      const auto next = std::ranges::find_if(around, [&left](Index n) { return left.contains(n); });
       node = next == around.end() ? -1 : *next;
     }
   }

@@ -51,7 +51,7 @@ struct Quantity {
 
 double spread(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
-  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  const auto [least, largest] = std::ranges::minmax_element(values);
   return *largest - *least;
 }
 
@@ -76,7 +76,7 @@ std::string force_component(const RunData& run) {
 }
 
 std::string in_words(std::string column) {
-  std::replace(column.begin(), column.end(), '_', ' ');
+  std::ranges::replace(column, '_', ' ');
   if (const std::size_t dot = column.find('.'); dot != std::string::npos) column.replace(dot, 1, ": ");
   return column;
 }
@@ -140,7 +140,7 @@ Curve curve_of(const RunData& run, std::size_t number, const std::string& label,
 void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel) {
   std::vector<double> reaches;
   for (const Curve& curve : curves) reaches.push_back(curve.extent.reach());
-  std::sort(reaches.begin(), reaches.end());
+  std::ranges::sort(reaches);
   const double middle = reaches[(reaches.size() - 1) / 2];
   Extent inside, outside;
   panel["notes"] = Json::array();
@@ -180,8 +180,7 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
   panel["y_label"] = name;
   if (!options.logarithmic) choose_range(curves, from_zero, panel);
   // Smooth curves are drawn over those that oscillate.
-  std::stable_sort(curves.begin(), curves.end(),
-                   [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
+  std::ranges::stable_sort(curves, [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
   panel["curves"] = Json::array();
   Extent time;
   for (const Curve& curve : curves) {
@@ -235,7 +234,7 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
   }
   if (panel["x"].size() < 2) refuse(fmt::format("{}: there are fewer than two frames to draw", run.directory));
   // The scale ends at a percentile, so that a few peaks hide nothing.
-  std::sort(pressures.begin(), pressures.end());
+  std::ranges::sort(pressures);
   panel["high"] = pressures.empty() ? 1.0 : pressures[(pressures.size() - 1) * 99 / 100];
   return panel;
 }

@@ -49,7 +49,7 @@ std::optional<double> broken_at(const RunData& run, const std::vector<std::strin
   std::optional<double> first;
   for (const std::string& column : columns) {
     const std::vector<double>& values = run.column(column);
-    const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+    const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
     if (bad == values.end()) continue;
     const double time = run.times_of(column)[static_cast<std::size_t>(bad - values.begin())];
     if (!first || time < *first) first = time;
@@ -79,7 +79,7 @@ void judge_energy(const RunData& run, Judgement& result) {
   // If only contact acts, even a small initial energy is the reference, as any growth was created.
   if (!(result.energy_scale > (result.is_isolated ? 0.0 : 1e-12 * most))) result.energy_scale = most;
   const std::vector<double> changing = result.is_isolated ? total : energy_of_method(run);
-  const auto [least, largest] = std::minmax_element(changing.begin(), changing.end());
+  const auto [least, largest] = std::ranges::minmax_element(changing);
   result.energy_gain = *largest - changing.front();
   result.energy_loss = changing.front() - *least;
   result.energy_change = changing.back() - changing.front();

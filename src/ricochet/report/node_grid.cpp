@@ -31,7 +31,7 @@ GridBox NodeGrid::box(const Points& nodes, Index node) const {
 }
 
 std::vector<Index> sorted_unique(std::vector<Index> numbers) {
-  std::sort(numbers.begin(), numbers.end());
+  std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
@@ -41,7 +41,7 @@ std::vector<Index> spatially_sorted(const Points& nodes, const std::vector<Index
   std::vector<std::pair<std::uint64_t, Index>> order;
   order.reserve(chosen.size());
   for (const Index node : chosen) order.emplace_back(interleaved(grid.box(nodes, node)), node);
-  std::sort(order.begin(), order.end());
+  std::ranges::sort(order);
   std::vector<Index> result;
   result.reserve(order.size());
   for (const auto& [position, node] : order) result.push_back(node);

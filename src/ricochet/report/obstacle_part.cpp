@@ -26,7 +26,7 @@ class Translations {
     const auto corners = static_cast<std::size_t>(first.corners);
     for (std::size_t k = 0; k < first.cells.size(); ++k)
       obstacle_[static_cast<std::size_t>(first.cells[k])] = first.obstacle[k / corners];
-    count_.setZero(1 + *std::max_element(obstacle_.begin(), obstacle_.end()));
+    count_.setZero(1 + *std::ranges::max_element(obstacle_));
     for (const int obstacle : obstacle_) count_[obstacle] += 1.0;
   }
 
@@ -74,7 +74,7 @@ ObstaclePart pack_obstacles(const std::vector<ObstacleFrame>& frames, PackedArra
     if (frame.positions.size() == first.positions.size()) shown.push_back(&frame);
   }
   const bool moves =
-      std::any_of(shown.begin(), shown.end(), [&](const ObstacleFrame* f) { return f->positions != first.positions; });
+      std::ranges::any_of(shown, [&](const ObstacleFrame* f) { return f->positions != first.positions; });
   if (!moves) shown.resize(1);
   ObstaclePart part;
   part.corners = first.corners;

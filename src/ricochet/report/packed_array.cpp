@@ -117,7 +117,7 @@ void append_base64(std::string_view bytes, std::string& text) {
 
 std::size_t PackedArrays::add(std::string bytes) {
   std::string blob = smallest(bytes);
-  const auto found = std::find(blobs_.begin(), blobs_.end(), blob);
+  const auto found = std::ranges::find(blobs_, blob);
   if (found != blobs_.end()) return static_cast<std::size_t>(found - blobs_.begin());
   blobs_.push_back(std::move(blob));
   return blobs_.size() - 1;

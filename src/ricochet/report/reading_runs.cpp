@@ -17,7 +17,7 @@ void read_with_retries(const std::vector<std::string>& directories, const std::f
     try {
       return read();
     } catch (const Error& problem) {
-      const auto used = std::find_if(directories.begin(), directories.end(), RunDirectory::is_in_use);
+      const auto used = std::ranges::find_if(directories, RunDirectory::is_in_use);
       if (problem.kind() != ErrorKind::invalid_input || used == directories.end()) throw;
       if (attempt == most_attempts) {
         throw Error(problem.kind(), fmt::format("{} (a run is writing into {}: try again)", problem.what(), *used));

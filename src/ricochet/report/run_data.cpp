@@ -24,7 +24,7 @@ std::vector<std::string> probe_files(const std::string& directory) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("probes-") && name.ends_with(".csv")) files.push_back(name);
   }
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -165,7 +165,7 @@ std::vector<std::string> RunData::column_names() const {
 }
 
 const Probe* RunData::contact_probe() const {
-  const auto found = std::find_if(summary.probes.begin(), summary.probes.end(), [this](const auto& each) {
+  const auto found = std::ranges::find_if(summary.probes, [this](const auto& each) {
     return each.probe.contact_node >= 0 && has_column(each.probe.name + ".reaction_normal");
   });
   return found == summary.probes.end() ? nullptr : &found->probe;

@@ -34,9 +34,7 @@ template <std::size_t count>
 int sides_of(const std::vector<std::vector<int>>& facets, const FlatPiece& corners) {
   int sides = 0;
   for (const std::vector<int>& facet : facets) {
-    const auto contains = [&](std::size_t k) {
-      return std::find(facet.begin(), facet.end(), corners[k]) != facet.end();
-    };
+    const auto contains = [&](std::size_t k) { return std::ranges::find(facet, corners[k]) != facet.end(); };
     for (std::size_t k = 0; k < count; ++k) {
       bool all = true;
       for (std::size_t i = 0; i < count; ++i) {
@@ -115,7 +113,7 @@ std::vector<Simplex<count>> merged(const Points& nodes, const std::vector<Simple
   for (Simplex<count> simplex : simplices) {
     for (Index& corner : simplex.corners) corner = representative[static_cast<std::size_t>(corner)];
     std::array<Index, count> key = simplex.corners;
-    std::sort(key.begin(), key.end());
+    std::ranges::sort(key);
     if (std::adjacent_find(key.begin(), key.end()) != key.end()) continue;
     if (count == 3 && !added.insert(key).second) continue;
     simplex.sides = (1 << count) - 1;
@@ -142,8 +140,7 @@ Simplices drawn(const Points& nodes, std::vector<Simplex<count>> simplices, Inde
     for (const Index corner : simplex.corners) least = std::min(least, number(corner));
     return std::pair(least, simplex.cell);
   };
-  std::stable_sort(simplices.begin(), simplices.end(),
-                   [&](const auto& a, const auto& b) { return first_of(a) < first_of(b); });
+  std::ranges::stable_sort(simplices, [&](const auto& a, const auto& b) { return first_of(a) < first_of(b); });
   for (const Simplex<count>& simplex : simplices) {
     for (const Index corner : simplex.corners) result.corners.push_back(number(corner));
     result.cells.push_back(static_cast<int>(simplex.cell));

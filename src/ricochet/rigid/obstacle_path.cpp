@@ -64,7 +64,7 @@ class TablePath final : public ObstaclePath {
  private:
   using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
   [[nodiscard]] Row at(double time) const {
-    const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+    const auto after = std::ranges::upper_bound(times_, time);
     if (after == times_.begin()) return values_.col(0);
     if (after == times_.end()) return values_.col(values_.cols() - 1);
     const auto next = static_cast<Index>(after - times_.begin());
@@ -81,7 +81,7 @@ class TablePath final : public ObstaclePath {
 void refuse_length_header(const NumberLines& lines, const std::string& file) {
   const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
   const std::string last = lines.header().empty() ? "" : lines.header().back();
-  if (std::find(lengths.begin(), lengths.end(), last) != lengths.end())
+  if (std::ranges::find(lengths, last) != lengths.end())
     lines.fail(fmt::format("the fourth column is called \"{}\", but in two dimensions it is the rotation in rad; "
                            "remove it, or call it \"rotation\"",
                            last),

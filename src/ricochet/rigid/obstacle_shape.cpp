@@ -95,7 +95,7 @@ void check_direction(const ParameterCheck& check, const Parameters& values, cons
                      const std::string& meaning) {
   if (!check.is_usable(key)) return;
   const std::vector<double>& direction = values.vector(key);
-  if (std::all_of(direction.begin(), direction.end(), [](double n) { return n == 0.0; }))
+  if (std::ranges::all_of(direction, [](double n) { return n == 0.0; }))
     check.add_problem(key, '"' + key + "\" must not be zero: it " + meaning);
 }
 

@@ -111,7 +111,7 @@ double largest_absolute(const TimeSeries& course) {
 }
 
 [[noreturn]] void throw_no_event(const TimeSeries& course, const Quantity& quantity) {
-  const auto [least, largest] = std::minmax_element(course.values.begin(), course.values.end());
+  const auto [least, largest] = std::ranges::minmax_element(course.values);
   const bool above = quantity.threshold.above;
   throw Error(ErrorKind::invalid_input,
               fmt::format("history.{} is never {} {:g}: its {} value from {:.9g} to {:.9g} is {:.9g}", quantity.name,
@@ -138,9 +138,9 @@ double time_of_event(const TimeSeries& course, const Quantity& quantity) {
 double value_of_course(const Quantity& quantity, const TimeSeries& course) {
   switch (quantity.kind) {
     case Quantity::Kind::maximum:
-      return *std::max_element(course.values.begin(), course.values.end());
+      return *std::ranges::max_element(course.values);
     case Quantity::Kind::minimum:
-      return *std::min_element(course.values.begin(), course.values.end());
+      return *std::ranges::min_element(course.values);
     case Quantity::Kind::maximum_absolute:
       return largest_absolute(course);
     case Quantity::Kind::total_variation:

@@ -48,14 +48,13 @@ void RotationWatch::persist(const SnapshotVisitor& visit) {
 }
 
 double RotationWatch::time_beyond_limit() const {
-  const auto first = std::find_if(records_.begin(), records_.end(),
-                                  [this](const RotationRecord& noted) { return noted.rotation > limit_; });
+  const auto first =
+      std::ranges::find_if(records_, [this](const RotationRecord& noted) { return noted.rotation > limit_; });
   return first == records_.end() ? std::numeric_limits<double>::infinity() : first->time;
 }
 
 double RotationWatch::largest_until(double time) const {
-  const auto after =
-      std::find_if(records_.begin(), records_.end(), [time](const RotationRecord& noted) { return noted.time > time; });
+  const auto after = std::ranges::find_if(records_, [time](const RotationRecord& noted) { return noted.time > time; });
   return after == records_.begin() ? 0.0 : std::prev(after)->rotation;
 }
 

@@ -44,9 +44,8 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
             input.where(fmt::format("contact.{}.friction_bound", i)).text()));
   }
   const auto& requested = options.export_contact;
-  const bool some =
-      std::any_of(requested.begin(), requested.end(), [&](const StepRange& r) { return r.first <= steps; });
-  const bool all = std::all_of(requested.begin(), requested.end(), [&](const StepRange& r) { return r.last <= steps; });
+  const bool some = std::ranges::any_of(requested, [&](const StepRange& r) { return r.first <= steps; });
+  const bool all = std::ranges::all_of(requested, [&](const StepRange& r) { return r.last <= steps; });
   if (!some)
     throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has only {}", counted(steps, "step")));
   if (!all)
@@ -199,7 +198,7 @@ void Run::begin_session() {
     // The end may have been moved since.
     std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
     for (auto warning = session_.warnings().begin() + built; warning != session_.warnings().end(); ++warning) {
-      if (std::find(warnings.begin(), warnings.end(), *warning) == warnings.end()) warnings.push_back(*warning);
+      if (std::ranges::find(warnings, *warning) == warnings.end()) warnings.push_back(*warning);
     }
     session_.warnings_ = std::move(warnings);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
@@ -241,8 +240,8 @@ void Run::open_files() {
 /// processes: the choice of states that are searched for the largest stress depends on this number.
 std::size_t Run::entries_of_whole_body() const {
   const std::vector<ChosenMethod>& methods = session_.simulation().methods();
-  const bool is_factored = std::all_of(
-      methods.begin(), methods.end(), [](const ChosenMethod& chosen) { return chosen.method == SolverMethod::direct; });
+  const bool is_factored =
+      std::ranges::all_of(methods, [](const ChosenMethod& chosen) { return chosen.method == SolverMethod::direct; });
   return is_factored && !ranks_.are_several() ? session_.simulation().factor_entries() : 0;
 }
 

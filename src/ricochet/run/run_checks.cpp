@@ -35,7 +35,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
           column_index(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
   for (const std::string& work : column_names_of(ColumnGroup::work)) works_.push_back(column_index(columns, work));
   const auto of_bodies = [](const std::string& column) { return column.starts_with("momentum."); };
-  const auto first = std::find_if(columns.begin(), columns.end(), of_bodies);
+  const auto first = std::ranges::find_if(columns, of_bodies);
   body_momenta_ = static_cast<std::size_t>(first - columns.begin());
   body_momenta_end_ = body_momenta_ + static_cast<std::size_t>(std::count_if(first, columns.end(), of_bodies));
   Vector inertia;

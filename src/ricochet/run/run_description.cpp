@@ -23,8 +23,8 @@ ContactDescription describe_contact(const Case& input, const ContactSection& con
   result.tied = contact.tied;
   result.all_pairs_group = all_pairs_group;
   if (result.between_bodies) return result;
-  const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
-                                     [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
+  const auto obstacle =
+      std::ranges::find_if(input.obstacles, [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
   result.opponent = contact.obstacle;
   result.obstacle_velocity = obstacle->velocity;
   result.obstacle_rotation_rate = obstacle->rotation_rate;
@@ -76,9 +76,8 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.supported_dofs = model.sizes.supported_dofs;
   summary.factor_entries = simulation.factor_entries();
   const std::vector<ChosenMethod>& methods = simulation.methods();
-  const auto iterative = std::find_if(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
-    return chosen.method == SolverMethod::iterative;
-  });
+  const auto iterative = std::ranges::find_if(
+      methods, [](const ChosenMethod& chosen) { return chosen.method == SolverMethod::iterative; });
   summary.solver = iterative != methods.end() ? "iterative" : "direct";
   if (!methods.empty()) summary.solver_reason = (iterative != methods.end() ? *iterative : methods.front()).reason;
   summary.step = input.time.step;
@@ -118,8 +117,7 @@ ContactProvenance describe_provenance(const Case& input, const RunSummary& summa
   result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass_text());
   std::vector<std::string> spaces;
   for (const ContactSection& contact : input.contacts) {
-    if (std::find(spaces.begin(), spaces.end(), contact.multipliers) == spaces.end())
-      spaces.push_back(contact.multipliers);
+    if (std::ranges::find(spaces, contact.multipliers) == spaces.end()) spaces.push_back(contact.multipliers);
   }
   for (const std::string& space : spaces) result.origin += " " + space;
   result.origin += fmt::format(", displacement of degree {}, {} dofs.", summary.degree, summary.dofs);

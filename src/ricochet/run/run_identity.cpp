@@ -116,8 +116,7 @@ class PartChecksums {
       if (!group.name.starts_with(part_.group_name(""))) continue;
       const std::vector<Index>& all = group.dimension == mesh_.dimension ? part_.cells : facets_;
       std::vector<Index> members;
-      for (const Index member : group.members)
-        members.push_back(std::lower_bound(all.begin(), all.end(), member) - all.begin());
+      for (const Index member : group.members) members.push_back(std::ranges::lower_bound(all, member) - all.begin());
       sum.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
       sum.add(members.data(), members.size());
     }

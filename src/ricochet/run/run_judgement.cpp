@@ -47,8 +47,8 @@ void judge_loss(const RunSummary& summary, const Scheme& scheme, const Semidiscr
   constexpr double most = 0.05;
   const double loss = summary.method_energy.lost, energy = summary.energy_scale(), work = summary.work_scale();
   if (!(loss > most) || is_rounding_of_energy(energy, problem, state)) return;
-  const bool rebounds = std::any_of(summary.impacts.begin(), summary.impacts.end(),
-                                    [](const Impact& impact) { return impact.restitution().has_value(); });
+  const bool rebounds =
+      std::ranges::any_of(summary.impacts, [](const Impact& impact) { return impact.restitution().has_value(); });
   if (!rebounds) {
     if (loss * energy > most * work) {
       log::warning(
@@ -142,9 +142,8 @@ void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem
 
 void judge_strain(const RunSummary& summary, const Body& body) {
   if (!summary.peak_stress) return;
-  const auto material = std::find_if(body.materials.begin(), body.materials.end(), [&](const Material& candidate) {
-    return candidate.name == summary.peak_stress->material;
-  });
+  const auto material = std::ranges::find_if(
+      body.materials, [&](const Material& candidate) { return candidate.name == summary.peak_stress->material; });
   if (material == body.materials.end()) return;
   const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu());
   if (!(strain > strain_limit) || !material->law->is_linear()) return;

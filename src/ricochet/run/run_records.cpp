@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds longest_wait{300};
 constexpr double long_step = 0.5, snapshot_share = 0.05;
 
 void merge(const UnwatchedPenetration& other, std::vector<UnwatchedPenetration>& found) {
-  const auto same = std::find_if(found.begin(), found.end(), [&](const UnwatchedPenetration& own) {
+  const auto same = std::ranges::find_if(found, [&](const UnwatchedPenetration& own) {
     return own.obstacle == other.obstacle && own.bodies == other.bodies && own.passed_through == other.passed_through;
   });
   if (same == found.end()) {
@@ -40,8 +40,8 @@ void merge(const UnwatchedPenetration& other, std::vector<UnwatchedPenetration>&
 
 /// Keeps the larger share; shares refer to the contact force on one process.
 void merge(const UnsettledContact& other, std::vector<UnsettledContact>& contacts) {
-  const auto same = std::find_if(contacts.begin(), contacts.end(),
-                                 [&](const UnsettledContact& own) { return own.contact == other.contact; });
+  const auto same =
+      std::ranges::find_if(contacts, [&](const UnsettledContact& own) { return own.contact == other.contact; });
   if (same == contacts.end()) {
     contacts.push_back(other);
   } else if (other.share > same->share) {
@@ -50,9 +50,8 @@ void merge(const UnsettledContact& other, std::vector<UnsettledContact>& contact
 }
 
 void merge(const ContactBeyondRim& other, std::vector<ContactBeyondRim>& rims) {
-  const auto same = std::find_if(rims.begin(), rims.end(), [&](const ContactBeyondRim& own) {
-    return own.group == other.group && own.obstacle == other.obstacle;
-  });
+  const auto same = std::ranges::find_if(
+      rims, [&](const ContactBeyondRim& own) { return own.group == other.group && own.obstacle == other.obstacle; });
   if (same == rims.end()) {
     rims.push_back(other);
   } else if (other.time < same->time) {
@@ -247,10 +246,9 @@ void Run::gather_from_ranks(RunSummary& summary) {
     merge_findings(other, summary);
     for (const std::string& warning : other.warnings) {
       const std::vector<std::string>& reported = session_.warnings();
-      if (std::none_of(reported.begin(), reported.end(),
-                       [&, form = message_pattern(warning)](const std::string& before) {
-                         return message_pattern(before) == form;
-                       }))
+      if (std::ranges::none_of(reported, [&, form = message_pattern(warning)](const std::string& before) {
+            return message_pattern(before) == form;
+          }))
         log::warning(warning);
     }
   }

@@ -102,8 +102,8 @@ void Session::save(Snapshot& snapshot) {
 }
 
 bool Session::is_steered() const {
-  return load_ != nullptr || std::any_of(input_.obstacles.begin(), input_.obstacles.end(),
-                                         [](const ObstacleSection& obstacle) { return obstacle.is_steered; });
+  return load_ != nullptr ||
+         std::ranges::any_of(input_.obstacles, [](const ObstacleSection& obstacle) { return obstacle.is_steered; });
 }
 
 bool Session::is_complete_already() const {

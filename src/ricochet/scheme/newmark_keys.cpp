@@ -19,7 +19,7 @@ struct Preset {
 const std::array<Preset, 2> presets{{{"trapezoidal", 0.25, 0.5}, {"textbook-half", 0.5, 0.5}}};
 
 const Preset& find_preset(const std::string& name) {
-  return *std::find_if(presets.begin(), presets.end(), [&](const Preset& preset) { return preset.name == name; });
+  return *std::ranges::find_if(presets, [&](const Preset& preset) { return preset.name == name; });
 }
 
 std::vector<std::string> preset_names() {

@@ -57,7 +57,7 @@ void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> s
   for (const std::string& key : names) {
     Vector& values = memory[key];
     visit("memory." + key, values);
-    visit.require(std::find(sizes.begin(), sizes.end(), values.size()) != sizes.end(), "memory." + key,
+    visit.require(std::ranges::find(sizes, values.size()) != sizes.end(), "memory." + key,
                   "has a length that does not fit this problem");
   }
 }

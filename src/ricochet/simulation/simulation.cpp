@@ -18,8 +18,7 @@ namespace {
 /// Checks the dofs that the stage solves for; a stage of contact nodes need not inspect the whole body.
 bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector& increment) {
   if (dofs != StageDofs::contact) return increment.allFinite();
-  return std::all_of(problem.contact_dofs.begin(), problem.contact_dofs.end(),
-                     [&](Index dof) { return std::isfinite(increment[dof]); });
+  return std::ranges::all_of(problem.contact_dofs, [&](Index dof) { return std::isfinite(increment[dof]); });
 }
 
 /// Number of times that a step without a solution is halved.
@@ -206,7 +205,7 @@ void Simulation::take_step(bool is_shortest) {
   solve_step();
   const double end = state_.time + scheme_.step();
   const auto passes = [&](const TunnellingWatch& guard) { return guard.any_tunnels(state_, end); };
-  if (!is_guarded || !problem_.ranks->any(std::any_of(guards_.begin(), guards_.end(), passes))) return;
+  if (!is_guarded || !problem_.ranks->any(std::ranges::any_of(guards_, passes))) return;
   state_ = unguarded_;
   has_tunnelled_ = true;
   throw Error(ErrorKind::not_converged,

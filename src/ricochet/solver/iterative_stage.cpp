@@ -170,7 +170,7 @@ void IterativeStage::mask(Vector& values) const {
 
 /// Returns whether some of these points are in no subdomain.
 bool IterativeStage::are_outside(const std::vector<Index>& points) const {
-  return std::any_of(points.begin(), points.end(), [&](Index point) { return candidates_.number(point) < 0; });
+  return std::ranges::any_of(points, [&](Index point) { return candidates_.number(point) < 0; });
 }
 
 /// Makes subdomains for these points and those near them, and for those of the last subdomains unless there are too
@@ -184,7 +184,7 @@ void IterativeStage::make_subdomains(const LinearStage& stage, const std::vector
   }
   points = neighbourhood_.points_around(points);
   points.insert(points.end(), candidates_.points().begin(), candidates_.points().end());
-  std::sort(points.begin(), points.end());
+  std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   candidates_.clear();
   candidates_.add_candidates(points);

@@ -38,7 +38,7 @@ class TimeFunction {
     const double shifted_time = time - delay_;
     const double slack = 1e-9 * std::max(std::abs(times_.front()), std::abs(times_.back()));
     if (shifted_time < times_.front() - slack || shifted_time > times_.back() + slack) return std::nullopt;
-    const auto above = std::upper_bound(times_.begin(), times_.end(), shifted_time);
+    const auto above = std::ranges::upper_bound(times_, shifted_time);
     if (above == times_.begin()) return values_.front();
     if (above == times_.end()) return values_.back();
     const auto i = static_cast<std::size_t>(above - times_.begin());

@@ -23,7 +23,7 @@ std::string last_part(const std::string& key) {
 /// suffices.
 std::string value_label(const StudyAxis& axis, std::size_t at) {
   const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
-  if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
+  if (std::ranges::count_if(axis.values, same) == 1) return axis.values[at].front();
   return fmt::format("{}", fmt::join(axis.values[at], "/"));
 }
 
@@ -88,15 +88,14 @@ Texts labels_in_study(const Texts& directories) {
   const Study study = read_study(study_folder);
   std::vector<const PlannedRun*> runs;
   for (const std::string& folder : folders) {
-    const auto found =
-        std::find_if(study.runs.begin(), study.runs.end(), [&](const StudyRun& run) { return run.folder == folder; });
+    const auto found = std::ranges::find_if(study.runs, [&](const StudyRun& run) { return run.folder == folder; });
     if (found == study.runs.end()) return {};
     runs.push_back(&found->planned);
   }
   std::vector<std::size_t> axes;
   for (std::size_t a = 0; a < study.plan.axes.size(); ++a) {
     const auto differs = [&](const PlannedRun* run) { return run->at[a] != runs.front()->at[a]; };
-    if (std::any_of(runs.begin(), runs.end(), differs)) axes.push_back(a);
+    if (std::ranges::any_of(runs, differs)) axes.push_back(a);
   }
   if (axes.empty()) return {};
   Texts labels;

@@ -21,8 +21,7 @@ constexpr double least_order = 0.1;
 std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::size_t axis) {
   std::vector<std::size_t> at = study.runs[run].planned.at;
   if (at[axis]-- == 0) return std::nullopt;
-  const auto found =
-      std::find_if(study.runs.begin(), study.runs.end(), [&](const StudyRun& other) { return other.planned.at == at; });
+  const auto found = std::ranges::find_if(study.runs, [&](const StudyRun& other) { return other.planned.at == at; });
   return static_cast<std::size_t>(found - study.runs.begin());
 }
 
@@ -52,7 +51,7 @@ std::string idle_text(const std::string& key, const std::string& name,
     if (order) found.push_back(*order);
   }
   const std::vector<bool> idle = find_stagnant_orders(key, found);
-  const auto count = std::count(idle.begin(), idle.end(), true);
+  const auto count = std::ranges::count(idle, true);
   return count > 0 ? fmt::format("{} of {} for {}", count, found.size(), name) : "";
 }
 
@@ -63,7 +62,7 @@ bool is_biased(const StudyQuestions& questions) {
 }  // namespace
 
 std::vector<bool> find_stagnant_orders(const std::string& key, const std::vector<double>& orders) {
-  const auto positive = std::count_if(orders.begin(), orders.end(), [](double order) { return order > 0.0; });
+  const auto positive = std::ranges::count_if(orders, [](double order) { return order > 0.0; });
   const bool smaller_is_finer = key == "time.step" || 2 * positive >= static_cast<std::ptrdiff_t>(orders.size());
   std::vector<bool> idle;
   for (const double order : orders) idle.push_back((smaller_is_finer ? order : -order) < least_order);
@@ -79,7 +78,7 @@ void add_order_columns(const Study& study, ResultTable& table, std::vector<std::
     if (!table.columns[c].name.starts_with(error_prefix)) continue;
     const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
     const std::vector<std::optional<double>> orders = orders_of(study, table, c);
-    any = any || std::any_of(orders.begin(), orders.end(), [](const auto& order) { return order.has_value(); });
+    any = any || std::ranges::any_of(orders, [](const auto& order) { return order.has_value(); });
     const auto behind = static_cast<std::ptrdiff_t>(c + 1);
     table.columns.insert(table.columns.begin() + behind, {order_prefix + name, true, 3, 2});
     for (std::size_t run = 0; run < table.rows.size(); ++run)

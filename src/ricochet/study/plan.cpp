@@ -69,7 +69,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& keys) {
   std::vector<std::string> names;
   for (const std::string& key : keys) {
     const auto same = [&](const std::string& other) { return last_part(other) == last_part(key); };
-    names.push_back(std::count_if(keys.begin(), keys.end(), same) > 1 ? key : last_part(key));
+    names.push_back(std::ranges::count_if(keys, same) > 1 ? key : last_part(key));
   }
   return names;
 }
@@ -109,7 +109,7 @@ StudyAxis parse_axis(const std::string& text) {
       refuse_axis(text, fmt::format("\"{}\" has {} for {}", entry, counted(values.size(), "value"),
                                     counted(axis.keys.size(), "key")));
     }
-    if (std::count(values.begin(), values.end(), "") > 0) refuse_axis(text, "a value is empty");
+    if (std::ranges::count(values, "") > 0) refuse_axis(text, "a value is empty");
     std::vector<std::string> meant;
     for (const std::string& value : values) meant.push_back(override_value_text(value));
     const auto [same, is_new] = spellings.emplace(meant, entry);
@@ -180,7 +180,7 @@ double step_of(const std::string& key, double value) {
 KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std::string& option) {
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
     const std::vector<std::string>& keys = plan.axes[a].keys;
-    const auto found = std::find(keys.begin(), keys.end(), key);
+    const auto found = std::ranges::find(keys, key);
     if (found != keys.end()) return {a, static_cast<std::size_t>(found - keys.begin())};
   }
   throw Error(ErrorKind::usage,
@@ -189,9 +189,8 @@ KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std
 
 bool is_numeric(const StudyPlan& plan, KeyPosition position) {
   const auto& values = plan.axes[position.axis].values;
-  return values.size() > 1 && std::all_of(values.begin(), values.end(), [&](const auto& entry) {
-           return number_in(entry[position.key]).has_value();
-         });
+  return values.size() > 1 &&
+         std::ranges::all_of(values, [&](const auto& entry) { return number_in(entry[position.key]).has_value(); });
 }
 
 }  // namespace ricochet

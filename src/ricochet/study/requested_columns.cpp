@@ -65,15 +65,15 @@ bool is_run_of_study(const std::string& reference) {
 /// Returns true if the runs may have different columns, which follow from meshes and probes.
 bool columns_vary(const StudyPlan& plan) {
   const Names keys = varied_keys(plan);
-  return std::any_of(keys.begin(), keys.end(),
-                     [](const std::string& key) { return key.starts_with("mesh.") || key.starts_with("probe."); });
+  return std::ranges::any_of(
+      keys, [](const std::string& key) { return key.starts_with("mesh.") || key.starts_with("probe."); });
 }
 
 /// Returns true if a run has the column whatever its mesh.
 bool is_always_there(const std::string& column) {
   const auto in = [&](int dimension) {
     const Names names = standard_column_names(dimension);
-    return std::count(names.begin(), names.end(), column) > 0;
+    return std::ranges::count(names, column) > 0;
   };
   return in(2) && in(3);
 }
@@ -106,7 +106,7 @@ std::optional<Names> columns_of(const Case& input) {
 /// Refuses a column that no run has, for runs whose meshes or probes differ.
 void require_possible_column(const RequestedColumn& request, const Case& input) {
   const Names names = history_column_names();
-  if (std::count(names.begin(), names.end(), request.column) > 0) return;
+  if (std::ranges::count(names, request.column) > 0) return;
   // A column of a probe, which may have another name in another run.
   if (request.column.find('.') != std::string::npos) return;
   refuse(request, input, names);
@@ -130,9 +130,9 @@ void check_requested_columns(const Study& study) {
     const HistoryTable reference = read_history(path, true);
     for (const std::string& name : questions.compare) static_cast<void>(find_compared(name, reference));
   }
-  const bool needs_runs =
-      compares_own_runs ||
-      std::any_of(request.begin(), request.end(), [](const RequestedColumn& a) { return !is_always_there(a.column); });
+  const bool needs_runs = compares_own_runs || std::ranges::any_of(request, [](const RequestedColumn& a) {
+                            return !is_always_there(a.column);
+                          });
   const std::optional<Case> input = needs_runs ? first_valid_case(study) : std::nullopt;
   if (!input) return;
   if (columns_vary(study.plan)) {
@@ -142,7 +142,7 @@ void check_requested_columns(const Study& study) {
   const std::optional<Names> columns = columns_of(*input);
   if (!columns) return;
   for (const RequestedColumn& one : request) {
-    if (std::count(columns->begin(), columns->end(), one.column) == 0) refuse(one, *input, *columns);
+    if (std::ranges::count(*columns, one.column) == 0) refuse(one, *input, *columns);
   }
   if (!compares_own_runs) return;
   for (const std::string& name : questions.compare) static_cast<void>(find_compared(name, empty_table(*columns)));

@@ -100,7 +100,7 @@ std::string doubts_of(const RunSummary& s) {
     doubts.emplace_back("peak_von_mises: at least");
   if (s.peak_stress && s.peak_stress->peak.raised_by != StressRaiser::none)
     doubts.emplace_back("peak_von_mises: grows with refinement");
-  const auto warnings = std::count_if(s.warnings.begin(), s.warnings.end(), concerns_validity);
+  const auto warnings = std::ranges::count_if(s.warnings, concerns_validity);
   if (warnings > 0) doubts.push_back(counted(warnings, "warning"));
   return fmt::format("{}", fmt::join(doubts, "; "));
 }

@@ -75,7 +75,7 @@ bool is_run_folder_name(std::string_view name) {
            std::string_view("._=+-").find(c) != std::string_view::npos;
   };
   // Names that begin with a dot denote this folder, its parent, or hidden files.
-  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
+  return !name.empty() && name.front() != '.' && std::ranges::all_of(name, is_plain);
 }
 
 void refuse_damaged_plan(const std::string& path, const std::string& why, const std::string& of) {

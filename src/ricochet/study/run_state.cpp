@@ -47,7 +47,7 @@ std::optional<int> RunState::final_status() const {
   const bool ended_well = !exit_status || exit_status == unexpected_status;
   if (is_done(*this) && ended_well) {
     const auto& all = summary->expectations;
-    const bool all_hold = std::all_of(all.begin(), all.end(), [](const auto& e) { return !e.checked || e.holds; });
+    const bool all_hold = std::ranges::all_of(all, [](const auto& e) { return !e.checked || e.holds; });
     return all_hold ? 0 : unexpected_status;
   }
   return exit_status;

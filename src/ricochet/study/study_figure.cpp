@@ -37,8 +37,8 @@ struct StudyPanel {
 
 bool has_numbers(const ResultTable& table, const std::string& column) {
   const std::size_t c = table.find(column);
-  return c < table.columns.size() && std::any_of(table.rows.begin(), table.rows.end(),
-                                                 [c](const auto& row) { return std::isfinite(number_of(row[c])); });
+  return c < table.columns.size() &&
+         std::ranges::any_of(table.rows, [c](const auto& row) { return std::isfinite(number_of(row[c])); });
 }
 
 std::vector<std::string> error_columns(const ResultTable& table) {
@@ -50,7 +50,7 @@ std::vector<std::string> error_columns(const ResultTable& table) {
 
 void require_column(const std::string& what, const std::string& column, const ResultTable& table) {
   const std::vector<std::string> names = table.names();
-  if (std::count(names.begin(), names.end(), column) > 0) return;
+  if (std::ranges::count(names, column) > 0) return;
   const std::string near = nearest_name(column, names);
   refuse_figure(what, fmt::format("study.csv has no column \"{}\"{}", column,
                                   near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near)));
@@ -101,7 +101,7 @@ std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, 
   std::vector<std::string> differing;
   for (std::size_t k = 0; k < vectors.front().size(); ++k) {
     const auto differs = [&](const std::vector<double>& vector) { return vector[k] != vectors.front()[k]; };
-    if (std::any_of(vectors.begin(), vectors.end(), differs)) differing.emplace_back(1, "xyz"[k]);
+    if (std::ranges::any_of(vectors, differs)) differing.emplace_back(1, "xyz"[k]);
   }
   if (part.empty()) part = differing.size() == 1 ? differing.front() : "length";
   std::vector<double> numbers;
@@ -117,7 +117,7 @@ std::vector<double> numbers_of(const std::vector<std::vector<double>>& vectors, 
 std::size_t axis_of(const std::string& column, const Study& study) {
   for (const std::string& key : {column, study.questions.order_key}) {
     const std::vector<std::string> keys = varied_keys(study.plan);
-    if (std::count(keys.begin(), keys.end(), key) > 0) return find_varied(study.plan, key, "--what").axis;
+    if (std::ranges::count(keys, key) > 0) return find_varied(study.plan, key, "--what").axis;
   }
   return study.plan.axes.size() - 1;
 }
@@ -174,7 +174,7 @@ std::string axis_label(const std::string& column) {
     if (column.starts_with(prefix)) return column.substr(prefix.size());
   }
   std::string label = column;
-  if (label.find('.') == std::string::npos) std::replace(label.begin(), label.end(), '_', ' ');
+  if (label.find('.') == std::string::npos) std::ranges::replace(label, '_', ' ');
   return label;
 }
 
@@ -196,7 +196,7 @@ std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, con
         std::isfinite(x) && std::isfinite(y) && !(panel.log_x && x <= 0.0) && !(panel.log_y && y <= 0.0);
     if (!is_shown) continue;
     const std::string label = line_label(study.runs[i].planned, study.plan, panel);
-    auto line = std::find_if(lines.begin(), lines.end(), [&](const StudyLine& other) { return other.label == label; });
+    auto line = std::ranges::find_if(lines, [&](const StudyLine& other) { return other.label == label; });
     if (line == lines.end()) line = lines.insert(line, {label, {}, {}});
     line->x.push_back(x);
     line->y.push_back(y);
@@ -222,9 +222,9 @@ void describe_orders(const std::vector<StudyLine>& lines, const std::string& key
     std::vector<double> orders = orders_of(line);
     const bool ends_idle = !orders.empty() && find_stagnant_orders(key, orders).back();
     last.push_back(ends_idle ? "floor" : orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
-    if (line.x.front() < line.x.back()) std::reverse(orders.begin(), orders.end());
+    if (line.x.front() < line.x.back()) std::ranges::reverse(orders);
     const std::vector<bool> idle = find_stagnant_orders(key, orders);
-    const auto floor = static_cast<std::size_t>(std::find(idle.begin(), idle.end(), true) - idle.begin());
+    const auto floor = static_cast<std::size_t>(std::ranges::find(idle, true) - idle.begin());
     if (floor < orders.size()) orders.resize(floor > 0 ? floor - 1 : 0);
     for (const double order : orders) {
       if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
@@ -232,10 +232,10 @@ void describe_orders(const std::vector<StudyLine>& lines, const std::string& key
   }
   std::vector<std::pair<int, long>> ranked;
   for (const auto& [order, count] : found) ranked.emplace_back(-count, order);
-  std::sort(ranked.begin(), ranked.end());
+  std::ranges::sort(ranked);
   std::vector<long> slopes;
   for (std::size_t i = 0; i < std::min<std::size_t>(2, ranked.size()); ++i) slopes.push_back(ranked[i].second);
-  std::sort(slopes.begin(), slopes.end());
+  std::ranges::sort(slopes);
   panel["slopes"] = Json(slopes);
   panel["note"] = fmt::format("last order{}: {}", last.size() > 1 ? "s" : "", fmt::join(last, ", "));
 }
@@ -262,7 +262,7 @@ std::vector<double> axis_positions(const ResultTable& table, StudyPanel& panel, 
   for (const auto& row : table.rows) {
     const std::string text = text_of(row[column]);
     all_numbers = all_numbers && (text.empty() || number_in(text));
-    const auto category = std::find(categories.begin(), categories.end(), text);
+    const auto category = std::ranges::find(categories, text);
     indices.push_back(static_cast<double>(category - categories.begin()));
     numbers.push_back(number_of(row[column]));
     if (category == categories.end()) categories.push_back(text);
@@ -291,7 +291,7 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
             {"slopes", Json::array()},
             {"curves", Json::array()}};
   const std::vector<std::string> keys = varied_keys(study.plan);
-  json["names_steps"] = std::count(keys.begin(), keys.end(), panel.x) > 0;
+  json["names_steps"] = std::ranges::count(keys, panel.x) > 0;
   json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
   for (const StudyLine& line : lines) json["curves"].push_back({{"label", line.label}, {"x", line.x}, {"y", line.y}});
   json["note"] = "";

@@ -80,7 +80,7 @@ std::string only_numeric_key(const StudyPlan& plan, const std::string& option, b
   }
   if (numeric.size() == 1) return numeric.front();
   if (!must_be_one) {
-    const bool has_step = std::count(numeric.begin(), numeric.end(), "time.step") > 0;
+    const bool has_step = std::ranges::count(numeric, "time.step") > 0;
     return has_step ? "time.step" : numeric.empty() ? "" : numeric.front();
   }
   throw Error(ErrorKind::usage, fmt::format("{}: {} with numeric values; name the key, as in {}:{}", option,
@@ -203,9 +203,8 @@ std::vector<StudyRun> reuse_runs(const StudyPlan& plan, const Study& before) {
   std::vector<StudyRun> left = before.runs, runs;
   std::size_t next = left.size();
   for (PlannedRun& planned : runs_of(plan)) {
-    const auto same = std::find_if(left.begin(), left.end(), [&](const StudyRun& run) {
-      return meaning_of(run.planned.settings) == meaning_of(planned.settings);
-    });
+    const auto same = std::ranges::find_if(
+        left, [&](const StudyRun& run) { return meaning_of(run.planned.settings) == meaning_of(planned.settings); });
     const std::string folder = same != left.end() ? same->folder : numbered(++next, planned.name);
     runs.push_back({std::move(planned), folder});
     if (same != left.end()) left.erase(same);

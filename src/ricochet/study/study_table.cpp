@@ -29,8 +29,7 @@ std::vector<std::string> expected_quantities(const Study& study) {
   for (const StudyRun& run : study.runs) {
     try {
       for (const ExpectSection& expect : read_case(study.plan.case_path, run.planned.settings).expectations) {
-        if (std::count(quantities.begin(), quantities.end(), expect.quantity) == 0)
-          quantities.push_back(expect.quantity);
+        if (std::ranges::count(quantities, expect.quantity) == 0) quantities.push_back(expect.quantity);
       }
       break;
     } catch (const Error&) {  // a run that was refused, as its row states
@@ -169,7 +168,7 @@ TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run
 void StudyTableMaker::add_quantities() {
   std::vector<std::string> added;
   const auto add = [&](const std::string& quantity, bool is_requested) {
-    if (std::count(added.begin(), added.end(), quantity) > 0) return;
+    if (std::ranges::count(added, quantity) > 0) return;
     added.push_back(quantity);
     const std::string option = is_requested ? "--quantity" : "";
     add_column({quantity, is_requested, 5, 1}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
@@ -206,13 +205,12 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
   if (kind == "finest") {
     const auto step = [&](const auto& value) { return step_of(key, number_in(value[position.key]).value_or(0.0)); };
     const auto finest =
-        std::min_element(values.begin(), values.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
+        std::ranges::min_element(values, [&](const auto& a, const auto& b) { return step(a) < step(b); });
     chosen = static_cast<std::size_t>(finest - values.begin());
   }
   std::vector<std::size_t> at = study_.runs[run].planned.at;
   at[position.axis] = chosen;
-  const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
-                                  [&](const StudyRun& other) { return other.planned.at == at; });
+  const auto found = std::ranges::find_if(study_.runs, [&](const StudyRun& other) { return other.planned.at == at; });
   return study_.path(*found);
 }
 

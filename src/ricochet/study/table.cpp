@@ -37,7 +37,7 @@ ReadersTable readers_table(const ResultTable& table, const std::vector<std::size
   ReadersTable result;
   result.lines.resize(table.rows.size() + 1);
   for (const std::size_t c : columns) {
-    result.is_number.push_back(std::none_of(table.rows.begin(), table.rows.end(), [c](const auto& row) {
+    result.is_number.push_back(std::ranges::none_of(table.rows, [c](const auto& row) {
       const auto* text = std::get_if<std::string>(&row[c]);
       return text != nullptr && !text->empty() && !number_in(*text);
     }));
@@ -53,7 +53,7 @@ std::vector<ReadersTable> parts_of(const ResultTable& table) {
   std::map<int, std::vector<std::size_t>> columns;
   for (std::size_t c = table.key_columns; c < table.columns.size(); ++c) {
     const auto is_empty = [c](const auto& row) { return text_of(row[c]).empty(); };
-    if (!table.columns[c].is_for_readers || std::all_of(table.rows.begin(), table.rows.end(), is_empty)) continue;
+    if (!table.columns[c].is_for_readers || std::ranges::all_of(table.rows, is_empty)) continue;
     std::vector<std::size_t>& part = columns[table.columns[c].part];
     if (part.empty()) {
       for (std::size_t key = 0; key < table.key_columns; ++key) part.push_back(key);
@@ -68,14 +68,13 @@ std::vector<ReadersTable> parts_of(const ResultTable& table) {
 /// Returns the number of UTF-8 characters, not bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace
 
 std::size_t ResultTable::find(const std::string& name) const {
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const TableColumn& column) { return column.name == name; });
+  const auto found = std::ranges::find_if(columns, [&](const TableColumn& column) { return column.name == name; });
   return static_cast<std::size_t>(found - columns.begin());
 }
 

@@ -57,7 +57,7 @@ TEST(RunChildren, EndsThoseThatRunAndStartsNoMoreWhenASignalComes) {
   work.stop_signal = [&] { return timer.seconds() > 0.3 ? SIGINT : 0; };
   EXPECT_EQ(run_children(5, 2, work), SIGINT);
   EXPECT_EQ(begun, 2);
-  std::sort(ended.begin(), ended.end());
+  std::ranges::sort(ended);
   EXPECT_EQ(ended, (std::vector<std::size_t>{0, 1}));
   EXPECT_LT(timer.seconds(), 5.0);
 }

@@ -33,7 +33,7 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     const Json required = schema.value("required", Json::array());
     // A key of one type is required where that type is named; one that gives way, only without the others.
     const bool always = key.required && key.only_for.empty() && key.replaced_by.empty();
-    EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
+    EXPECT_EQ(std::ranges::find(required, key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
   }
 }
@@ -138,8 +138,8 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
 bool is_of_a_type(const Section& section, const Key& key) {
   const auto has_key = [&](const auto& type) { return find_key(type.keys, key.name) != nullptr; };
   const auto& kinds = probe_registry().all();
-  return std::any_of(section.types.begin(), section.types.end(), has_key) ||
-         (section.name == "probe" && std::any_of(kinds.begin(), kinds.end(), has_key));
+  return std::ranges::any_of(section.types, has_key) ||
+         (section.name == "probe" && std::ranges::any_of(kinds, has_key));
 }
 
 /// Adds the keys that nothing binds to a member, except named numbers for expressions and the keys of types.

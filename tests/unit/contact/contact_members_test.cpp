@@ -64,8 +64,8 @@ TEST(ContactMembers, AreSentAndCut) {
   ASSERT_EQ(contact.rows->gap.size(), contact.size());
   EXPECT_EQ(own.rows->gap, chosen(contact.rows->gap, part.points));
   EXPECT_EQ(own.geometry->curved()->points.size(), 2U);
-  EXPECT_EQ(std::count_if(own.own_point.begin(), own.own_point.end(), [](Index point) { return point >= 0; }), 2);
-  EXPECT_GT(std::count(own.own_point.begin(), own.own_point.end(), -2), 0);
+  EXPECT_EQ(std::ranges::count_if(own.own_point, [](Index point) { return point >= 0; }), 2);
+  EXPECT_GT(std::ranges::count(own.own_point, -2), 0);
   Vector all = Vector::Zero(contact.size()), force = Vector::Zero(nodes * contact.dimension), own_force = force;
   all[1] = 1.0;
   contact.rows->add_force(all, {}, force);

@@ -79,7 +79,7 @@ void reorder(std::vector<CellBlock>& blocks, int dimension, std::vector<Group>& 
   for (Group& group : groups) {
     if (group.dimension != dimension) continue;
     for (Index& member : group.members) member = number[static_cast<std::size_t>(member)];
-    std::sort(group.members.begin(), group.members.end());
+    std::ranges::sort(group.members);
   }
 }
 
@@ -176,8 +176,8 @@ void expect_same(const Measures& plain, const Measures& other, const Change& cha
     std::vector<double> expected = measure.values, found = other.at(name).values;
     for (double& value : expected)
       value *= std::pow(change.length, measure.length) * std::pow(change.time, measure.time);
-    std::sort(expected.begin(), expected.end());
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(expected);
+    std::ranges::sort(found);
     ASSERT_EQ(found.size(), expected.size()) << name;
     const double size = std::max(std::abs(expected.front()), std::abs(expected.back()));
     for (std::size_t i = 0; i < found.size(); ++i)

@@ -18,7 +18,7 @@ std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
   std::vector<Index> result;
   for (Index facet = 0; facet < count; ++facet) {
     const std::vector<Index> nodes = facet_nodes(space, {facet});
-    if (std::find(nodes.begin(), nodes.end(), node) != nodes.end()) result.push_back(facet);
+    if (std::ranges::find(nodes, node) != nodes.end()) result.push_back(facet);
   }
   return result;
 }
@@ -41,7 +41,7 @@ TEST(RotatingNormal, NoOrderOfFacetsMatters) {
       const Vector outward = space.nodes.col(node) - space.nodes.rowwise().mean();
       direction = outward.normalized();
       const RotatingNormal one(space, facets, direction);
-      std::reverse(facets.begin(), facets.end());
+      std::ranges::reverse(facets);
       const RotatingNormal other(space, facets, direction);
       EXPECT_EQ(one.rotates(), other.rotates());
       EXPECT_LT((one.at(space.nodes, {}).head(d) - direction).norm(), 1e-14);

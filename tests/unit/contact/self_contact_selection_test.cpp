@@ -38,7 +38,7 @@ SlidingPair::Data both_faces(const CaseRun& run) {
   const ContactPair& pair = run.model().contact_pairs.front();
   std::vector<Index> facets = pair.facets;
   facets.insert(facets.end(), pair.opposite_facets.begin(), pair.opposite_facets.end());
-  std::sort(facets.begin(), facets.end());
+  std::ranges::sort(facets);
   SlidingPair::Data data{body, "p1", facets, facets, {}};
   const ContactPatch patch{&body, {{0, facets}}};
   const auto space = make_multiplier_space("p1", patch);
@@ -67,7 +67,7 @@ TEST(SelfContactSelection, HaveIndependentRowsAndLeaveOutThoseOfTheOtherSide) {
     ASSERT_TRUE(pair.is_self());
     const Index nodes = run.problem().nodes.cols(), d = run.problem().dimension;
     const std::vector<Index> upper = facet_nodes(run.model().space, run.model().contact_pairs.front().facets);
-    const auto is_upper = [&](Index node) { return std::binary_search(upper.begin(), upper.end(), node); };
+    const auto is_upper = [&](Index node) { return std::ranges::binary_search(upper, node); };
     SelfContactSelection chosen(pair, nodes, faces.degree);
     for (const double slide : {0.0, 0.05, 0.45, 0.9, 0.1}) {
       Vector displacement = Vector::Zero(run.problem().dof_count());

@@ -121,7 +121,7 @@ TEST(CellRotations, FindsTheCellThatTurnsMost) {
     EXPECT_NEAR(gauge.largest(u), 0.3, 1e-11) << kind.label();
     // One node moved: the cell with the largest rotation is one of its cells.
     const std::vector<Index>& numbers = test->space.number;
-    const Index node = std::max_element(numbers.begin(), numbers.end()) - numbers.begin();
+    const Index node = std::ranges::max_element(numbers) - numbers.begin();
     u.setZero();
     u[node * d] = 0.01;
     const double alone = gauge.largest(u);

@@ -33,16 +33,16 @@ TEST(GraphComponents, AreTheRingsThatWerePutIn) {
           }
         }
       }
-      std::sort(ring.begin(), ring.end());
+      std::ranges::sort(ring);
       wanted.push_back(ring);
     }
-    std::sort(wanted.begin(), wanted.end());
+    std::ranges::sort(wanted);
     SparseMatrix matrix(nodes * node_size, nodes * node_size);
     matrix.setFromTriplets(entries.begin(), entries.end());
     std::vector<std::vector<Index>> found = graph_components(MatrixGraph(matrix, node_size));
     for (std::vector<Index>& component : found) {
-      EXPECT_EQ(component.front(), *std::min_element(component.begin(), component.end()));
-      std::sort(component.begin(), component.end());
+      EXPECT_EQ(component.front(), *std::ranges::min_element(component));
+      std::ranges::sort(component);
     }
     EXPECT_EQ(found, wanted) << node_size << " rows per node";
   }

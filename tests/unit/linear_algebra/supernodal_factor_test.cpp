@@ -167,9 +167,7 @@ TEST_F(LargeFactor, SolvesSparseColumnsOnTheirPaths) {
     Matrix column = Matrix::Zero(path.rows(), 1);
     Vector whole = Vector::Zero(own_.work_size());
     for (const Index place : at) {
-      const auto k =
-          static_cast<std::size_t>(std::upper_bound(path.first.begin(), path.first.end(), place) - path.first.begin()) -
-          1;
+      const auto k = static_cast<std::size_t>(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
       column(path.offsets[k] + place - path.first[k], 0) = 1.0 + static_cast<double>(place % 3);
       whole[place] = 1.0 + static_cast<double>(place % 3);
     }
@@ -192,9 +190,7 @@ TEST_F(LargeFactor, GivesColumnsTheSameBitsInAnyCompany) {
     const FactorPath path = factor.path(chosen);
     Matrix columns = Matrix::Zero(path.rows(), static_cast<Index>(chosen.size()));
     const auto on_path = [&](Index place) {
-      const auto k =
-          static_cast<std::size_t>(std::upper_bound(path.first.begin(), path.first.end(), place) - path.first.begin()) -
-          1;
+      const auto k = static_cast<std::size_t>(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
       return path.offsets[k] + place - path.first[k];
     };
     Index at = 0;

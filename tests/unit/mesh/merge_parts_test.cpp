@@ -57,7 +57,7 @@ TEST(MergeParts, KeepsCellsFacetsAndGroupsOfEachPart) {
       EXPECT_EQ(part.node_count, own.node_count());
       EXPECT_EQ(mesh.nodes.middleCols(part.first_node, part.node_count), own.nodes);
       EXPECT_EQ(static_cast<Index>(part.cells.size()), own.cell_count());
-      EXPECT_TRUE(std::is_sorted(part.cells.begin(), part.cells.end()));
+      EXPECT_TRUE(std::ranges::is_sorted(part.cells));
       std::multiset<PlacedCell> before, after;
       for (Index cell = 0; cell < own.cell_count(); ++cell) before.insert(placed_cell(own, own.cells, cell));
       for (const Index cell : part.cells) after.insert(placed_cell(mesh, mesh.cells, cell));
@@ -67,7 +67,7 @@ TEST(MergeParts, KeepsCellsFacetsAndGroupsOfEachPart) {
         ASSERT_NE(merged, nullptr) << group.name;
         ++groups;
         EXPECT_EQ(merged->members.size(), group.members.size());
-        EXPECT_TRUE(std::is_sorted(merged->members.begin(), merged->members.end()));
+        EXPECT_TRUE(std::ranges::is_sorted(merged->members));
         if (group.dimension + 1 < own.dimension) continue;
         EXPECT_EQ(placed_members(mesh, *merged), placed_members(own, group)) << group.name;
       }
@@ -115,7 +115,7 @@ TEST(MergeParts, FacetsThatNoFileHasStayWithoutNumber) {
   add_built_in_group(parts[1].mesh, "boundary", 1);
   const Mesh mesh = merge_parts(parts);
   const Group& boundary = mesh.group("right.boundary", 1);
-  const auto count = std::count_if(boundary.members.begin(), boundary.members.end(), [&](Index facet) {
+  const auto count = std::ranges::count_if(boundary.members, [&](Index facet) {
     const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
     return mesh.facets[at.block].tags[static_cast<std::size_t>(at.local)] == 0;
   });

@@ -27,7 +27,7 @@ std::map<std::string, std::set<CellByNodes>> content_by_group(const Mesh& mesh) 
       for (int k = 0; k < block.nodes_per_cell; ++k) {
         tags.push_back(mesh.node_tags[static_cast<std::size_t>(block.cell(number)[k])]);
       }
-      std::sort(tags.begin(), tags.end());
+      std::ranges::sort(tags);
       result[key].insert(tags);
       return;
     }
@@ -152,7 +152,7 @@ TEST(ReadMesh, UnusedNodesAreLeftOut) {
       replaced(mesh_content("triangle_o1_msh22_ascii.msh"), "$Nodes\n11\n", "$Nodes\n12\n5000 9 9 9\n");
   const Mesh mesh = mesh_of(content);
   EXPECT_EQ(mesh.node_count(), 11);
-  EXPECT_EQ(std::count(mesh.node_tags.begin(), mesh.node_tags.end(), 5000), 0);
+  EXPECT_EQ(std::ranges::count(mesh.node_tags, 5000), 0);
 }
 
 TEST(ReadMesh, SectionsWithoutMeaningHereAreSkipped) {

@@ -228,7 +228,7 @@ TEST_P(ReferenceCell, FilesHaveEveryNodeOnce) {
   for (const int degree : {1, 2}) {
     for (std::vector<int> order :
          {gmsh_nodes(shape_, degree), vtk_nodes(shape_, degree), meshio_nodes(shape_, degree)}) {
-      std::sort(order.begin(), order.end());
+      std::ranges::sort(order);
       std::vector<int> every(static_cast<std::size_t>(node_count(shape_, degree)));
       std::iota(every.begin(), every.end(), 0);
       EXPECT_EQ(order, every) << degree;
@@ -241,7 +241,7 @@ TEST_P(ReferenceCell, FilesHaveEveryNodeOnce) {
   if (d_ == 2) {
     for (std::size_t k = 0; k < describe(shape_).file_vertices.size(); ++k) {
       VertexSet side{gmsh_nodes(shape_, 1)[k], gmsh_nodes(shape_, 1)[(k + 1) % describe(shape_).file_vertices.size()]};
-      std::sort(side.begin(), side.end());
+      std::ranges::sort(side);
       EXPECT_EQ(std::count(describe(shape_).edges.begin(), describe(shape_).edges.end(), side), 1);
     }
   }
@@ -256,12 +256,12 @@ TEST_P(ReferenceCell, FacetsOfAbaqusAndExodusAreThoseOfTheCell) {
   for (const VertexSet& facet : cell.abaqus_facets) {
     VertexSet vertices;
     for (const int vertex : facet) vertices.push_back(cell.file_vertices[static_cast<std::size_t>(vertex)]);
-    std::sort(vertices.begin(), vertices.end());
+    std::ranges::sort(vertices);
     found.insert(vertices);
   }
   EXPECT_EQ(found, expected);
   std::vector<int> sides = cell.exodus_sides;
-  std::sort(sides.begin(), sides.end());
+  std::ranges::sort(sides);
   std::vector<int> every(cell.facets.size());
   std::iota(every.begin(), every.end(), 0);
   EXPECT_EQ(sides, every);

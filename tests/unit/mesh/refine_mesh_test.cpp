@@ -39,7 +39,7 @@ TEST_P(RefineMesh, KeepsTheBodyAndItsGroups) {
       EXPECT_EQ(group.name, coarse.name);
       EXPECT_EQ(static_cast<Index>(group.members.size()),
                 static_cast<Index>(coarse.members.size()) * (coarse.dimension == d ? parts : of_facets));
-      EXPECT_TRUE(std::is_sorted(group.members.begin(), group.members.end()));
+      EXPECT_TRUE(std::ranges::is_sorted(group.members));
     }
   }
 }

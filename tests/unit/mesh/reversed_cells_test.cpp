@@ -168,7 +168,7 @@ TEST(ReversedCells, EveryFacetInsideTellsOnWhichSideItsCellsLie) {
         const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
         for (std::size_t k = 0; k < before.size(); ++k) nodes[k] = before[static_cast<std::size_t>(mirrored[k])];
         EXPECT_EQ(folded_facets(mesh.cells).size(), count) << shape;
-        std::copy(before.begin(), before.end(), nodes);
+        std::ranges::copy(before, nodes);
       }
     }
   }

@@ -111,7 +111,7 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   const DisplacementSpace& space = body->space;
   std::multiset<BodySurface::Piece> seen, shown;
   for (BodySurface::Piece piece : surface_pieces(space.nodes, space.cells, boundary_facets(space.cells))) {
-    std::sort(piece.begin(), piece.end());
+    std::ranges::sort(piece);
     seen.insert(piece);
   }
   const Simplices surface = make_surface(in_space(space.nodes), space.cells, 1000000);
@@ -119,14 +119,14 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   if (kind.dimension() == 2) {
     for (const auto& [side, times] : Sides(surface).times) {
       BodySurface::Piece piece{-1, number(side.first), number(side.second)};
-      std::sort(piece.begin(), piece.end());
+      std::ranges::sort(piece);
       if (times == 1) shown.insert(piece);
     }
   } else {
     for (std::size_t t = 0; t < surface.cells.size(); ++t) {
       BodySurface::Piece piece;
       for (std::size_t k = 0; k < 3; ++k) piece[k] = number(surface.corners[3 * t + k]);
-      std::sort(piece.begin(), piece.end());
+      std::ranges::sort(piece);
       shown.insert(piece);
     }
   }

@@ -33,7 +33,7 @@ struct Faces {
       for (int k = 0; k < 4; ++k) {
         std::array<int, 3> face{};
         for (std::size_t i = 0; i < 3; ++i) face[i] = vertex_of(volume, t, (k + 1 + static_cast<int>(i)) % 4);
-        std::sort(face.begin(), face.end());
+        std::ranges::sort(face);
         ++times[face];
         of_cells[face] += volume.sides[static_cast<std::size_t>(t)] >> k & 1;
       }
@@ -86,7 +86,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
     std::array<Index, 3> result{};
     for (std::size_t k = 0; k < 3; ++k) result[k] = nodes[static_cast<std::size_t>(corners[k])];
-    std::sort(result.begin(), result.end());
+    std::ranges::sort(result);
     return result;
   };
   std::set<std::array<Index, 3>> outside, drawn;

@@ -202,7 +202,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
         }
       }
     }
-    EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
+    EXPECT_EQ(std::ranges::count(uses, 0), 0);
     // About one node per cell, plus one at a pole or an end, instead of four per cell.
     const auto cells = static_cast<Index>(surface.cells.size() / corners);
     const bool has_rims = obstacle->shape().centre().size() == 0 || (dimension() == 3 && !has_poles);
@@ -250,8 +250,7 @@ INSTANTIATE_TEST_SUITE_P(All, Obstacles, testing::ValuesIn([] {
                            for (const auto& [type, dimension] : types_and_dimensions()) {
                              all.emplace_back(type, dimension, "outside");
                              const std::vector<std::string> keys = names_of(obstacle_registry().find(type).keys);
-                             if (std::count(keys.begin(), keys.end(), "side") > 0)
-                               all.emplace_back(type, dimension, "inside");
+                             if (std::ranges::count(keys, "side") > 0) all.emplace_back(type, dimension, "inside");
                            }
                            return all;
                          }()),

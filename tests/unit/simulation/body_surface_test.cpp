@@ -40,7 +40,7 @@ TEST(BoundaryFacets, AreThoseOfTheGroupThatNamesTheBoundary) {
       const DisplacementSpace& space = box->space;
       std::vector<std::vector<Index>> found, wanted;
       const auto sorted = [](std::vector<Index> nodes) {
-        std::sort(nodes.begin(), nodes.end());
+        std::ranges::sort(nodes);
         return nodes;
       };
       for (const CellFacet& facet : boundary_facets(space.cells))
@@ -50,8 +50,8 @@ TEST(BoundaryFacets, AreThoseOfTheGroupThatNamesTheBoundary) {
         const CellBlock& block = space.facets[place.block];
         wanted.push_back(sorted({block.cell(place.local), block.cell(place.local) + block.nodes_per_cell}));
       }
-      std::sort(found.begin(), found.end());
-      std::sort(wanted.begin(), wanted.end());
+      std::ranges::sort(found);
+      std::ranges::sort(wanted);
       EXPECT_EQ(found, wanted) << name(shape) << " of degree " << degree;
     }
   }

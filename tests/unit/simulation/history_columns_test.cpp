@@ -27,7 +27,7 @@ TEST(HistoryColumns, AreDocumentedAndUnique) {
     const bool is_conditional = !std::string(quantity.condition.words).empty();
     const std::vector<std::string> standard = standard_column_names(2);
     if (quantity.components != ColumnComponents::one) continue;
-    EXPECT_NE(std::count(standard.begin(), standard.end(), quantity.name) > 0, is_conditional) << quantity.name;
+    EXPECT_NE(std::ranges::count(standard, quantity.name) > 0, is_conditional) << quantity.name;
   }
   EXPECT_EQ(standard_column_names(3).size(), standard_column_names(2).size() + 4);  // two vectors and one axial vector
 }

@@ -45,8 +45,7 @@ TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
   divided.ranks = &two;
   // Half of the whole body: cells and facets of the groups over which averages are formed.
   const std::vector<Group>& groups = run.model().mesh.groups;
-  const Group& body =
-      *std::find_if(groups.begin(), groups.end(), [](const Group& group) { return group.dimension == 2; });
+  const Group& body = *std::ranges::find_if(groups, [](const Group& group) { return group.dimension == 2; });
   const auto sensors = [&](const SemidiscreteProblem& problem) {
     std::vector<std::shared_ptr<Sensor>> made;
     made.push_back(make_contact_sensor("c", problem, {SensedPair{0}}));

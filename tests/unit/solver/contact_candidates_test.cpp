@@ -180,7 +180,7 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
     most = std::max(most, candidates.points().size());
     candidates.update_history(conditions, height(static_cast<double>(step + 1) / steps) - now, 5);
   }
-  EXPECT_EQ(std::count(came.begin(), came.end(), 1), count);
+  EXPECT_EQ(std::ranges::count(came, 1), count);
   EXPECT_LE(most, 3000U);
 }
 

@@ -89,8 +89,8 @@ Vector forces_of_pressure(const ContactBoundary& boundary) {
 }
 
 double tolerance_of(const MeshedBody& test) {
-  const bool simplices = std::all_of(test.mesh.facets.begin(), test.mesh.facets.end(),
-                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
+  const bool simplices = std::ranges::all_of(
+      test.mesh.facets, [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
   return simplices ? 1e-13 : 1e-9;
 }
 

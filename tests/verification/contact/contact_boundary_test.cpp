@@ -47,7 +47,7 @@ std::string message_of(const MeshedBody& test, const std::vector<ContactPair>& p
 FreeComponent held_at_x0(const MeshedBody& test, const std::vector<int>& components) {
   const Points& nodes = test.space.nodes;
   return [&nodes, components](Index node, int component) {
-    return nodes(0, node) > 0.0 || std::find(components.begin(), components.end(), component) == components.end();
+    return nodes(0, node) > 0.0 || std::ranges::find(components, component) == components.end();
   };
 }
 
@@ -60,7 +60,7 @@ TEST(ContactBoundary, LeavesOutMultipliersThatSupportsHoldAlongTheNormal) {
       const std::string side = d == 2 ? "y0" : "z0";
       const std::vector<Index> nodes = facet_nodes(test->space, test->mesh.group(side, d - 1).members);
       const auto is_held = [&](Index node) { return test->space.nodes(0, node) == 0.0; };
-      const Index held = std::count_if(nodes.begin(), nodes.end(), is_held);
+      const Index held = std::ranges::count_if(nodes, is_held);
       for (const std::string& multipliers : multiplier_space_names()) {
         SCOPED_TRACE(name(shape) + std::to_string(degree) + multipliers);
         Index reported = -1;
@@ -194,7 +194,7 @@ TEST(ContactBoundary, JoinsGroupsThatShareAnObstacle) {
     // Each corner once per obstacle: (0,0) twice.
     EXPECT_EQ(boundary.nodes.size(), 7U + 7U + 7U - 1U);
     EXPECT_EQ(boundary.unique_nodes().size(), 7U + 7U + 7U - 2U);
-    EXPECT_TRUE(std::is_sorted(boundary.nodes.begin(), boundary.nodes.end()));
+    EXPECT_TRUE(std::ranges::is_sorted(boundary.nodes));
     EXPECT_NEAR(boundary.weights.sum(), 3.0, 1e-14);
     const std::set<int> used(boundary.pair.begin(), boundary.pair.end());
     EXPECT_EQ(used, (std::set<int>{0, 1, 2}));

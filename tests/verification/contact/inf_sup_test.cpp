@@ -59,7 +59,7 @@ void join_coincident_nodes(Mesh& mesh) {
   for (Index node = 0; node < mesh.node_count(); ++node) {
     const auto same = [&](Index other) { return (mesh.nodes.col(node) - mesh.nodes.col(other)).norm() < 1e-9; };
     const bool on_seam = std::abs(mesh.nodes(1, node)) < 1e-9 && mesh.nodes(0, node) > 0.0;
-    const auto found = on_seam ? std::find_if(kept.begin(), kept.end(), same) : kept.end();
+    const auto found = on_seam ? std::ranges::find_if(kept, same) : kept.end();
     number[static_cast<std::size_t>(node)] = found - kept.begin();
     if (found == kept.end()) kept.push_back(node);
   }

@@ -184,7 +184,7 @@ TEST_P(SpaceTest, GapsAreMeansOfTheGap) {
       }
       return values;
     });
-    std::stable_sort(multipliers.begin(), multipliers.end(), [](const Multiplier& a, const Multiplier& b) {
+    std::ranges::stable_sort(multipliers, [](const Multiplier& a, const Multiplier& b) {
       const auto key = [](const Multiplier& m) { return m.node >= 0 ? m.node : m.trace.front().first; };
       return std::pair(key(a), a.pair) < std::pair(key(b), b.pair);
     });

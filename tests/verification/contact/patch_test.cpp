@@ -266,7 +266,7 @@ TEST_P(ContactPatchTest, UniformPressureIsTransmittedOrDeviatesAsThePageSays) {
   for (std::size_t s = 0; s < names.size(); ++s) {
     SCOPED_TRACE(names[s]);
     const std::string stated = entry == table.end() ? "" : entry->second.at(s);
-    if (std::find(stable.begin(), stable.end(), names[s]) == stable.end()) {
+    if (std::ranges::find(stable, names[s]) == stable.end()) {
       EXPECT_EQ(stated, "unstable");
       row += " unstable |";
       continue;

@@ -152,7 +152,7 @@ TEST_P(ElasticCellsOfKind, HomogeneousStrainHasTheStressOfTheLaw) {
 
 std::string name_of(const ::testing::TestParamInfo<Kind>& info) {
   std::string law = info.param.law;
-  std::replace(law.begin(), law.end(), '-', '_');
+  std::ranges::replace(law, '-', '_');
   return info.param.element.label() + "_" + law + (info.param.mean_dilatation ? "_mean" : "") +
          (info.param.plane == PlaneState::stress         ? "_plane_stress"
           : info.param.plane == PlaneState::axisymmetric ? "_axisymmetric"

@@ -56,7 +56,7 @@ struct Variant : AssembledBody {
   SparseMatrix build(const AssembledBody& from, const char* type) {
     std::vector<Index> contact_nodes;
     for (const Index node : from.input.contact_nodes) contact_nodes.push_back(number[static_cast<std::size_t>(node)]);
-    std::sort(contact_nodes.begin(), contact_nodes.end());
+    std::ranges::sort(contact_nodes);
     assemble(std::move(contact_nodes));
     return build_mass(type, input);
   }
@@ -192,12 +192,12 @@ struct Slit {
     for (const auto& [from, to] : left) {
       if (grid.nodes(0, from) > 0.24 && grid.nodes(1, from) < 0.5) input.contact_nodes.push_back(to);
     }
-    std::sort(input.contact_nodes.begin(), input.contact_nodes.end());
+    std::ranges::sort(input.contact_nodes);
     mass = build_mass(cellwise, input);
   }
   [[nodiscard]] Index space_node(Index mesh_node) const {
     const std::vector<Index>& of_mesh = body->mesh.cells[0].nodes;
-    const auto place = std::find(of_mesh.begin(), of_mesh.end(), mesh_node) - of_mesh.begin();
+    const auto place = std::ranges::find(of_mesh, mesh_node) - of_mesh.begin();
     return body->space.cells[0].nodes[static_cast<std::size_t>(place)];
   }
 };

@@ -33,7 +33,7 @@ void expect_lumped(const SparseMatrix& mass, const AssembledBody& body, const st
   const Vector diagonal = mass.diagonal();
   EXPECT_EQ((SparseMatrix(mass) - SparseMatrix(Matrix(diagonal.asDiagonal()).sparseView())).norm(), 0.0) << name;
   for (Index i = 0; i < diagonal.size(); ++i) {
-    const bool contact = std::binary_search(body.input.contact_nodes.begin(), body.input.contact_nodes.end(), i);
+    const bool contact = std::ranges::binary_search(body.input.contact_nodes, i);
     EXPECT_EQ(mass.col(i).nonZeros(), contact ? 0 : 1) << name;
     EXPECT_TRUE(contact || diagonal[i] > 0.0) << name;
   }
@@ -51,7 +51,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
               "inertia");
   for (const BodyDescription& description : bodies_of_every_kind()) {
     const AssembledBody body(description);
-    const bool refused = std::count(refused_bodies.begin(), refused_bodies.end(), description.name) > 0;
+    const bool refused = std::ranges::count(refused_bodies, description.name) > 0;
     std::vector<std::string> warnings;
     const log::CollectWarnings collect(warnings);
     SparseMatrix mass;
@@ -100,8 +100,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
     for (Index i = 0; i < lumped.size(); ++i) {
       bool beside = false;
       for (SparseMatrix::InnerIterator entry(body.consistent, i); entry; ++entry) {
-        beside = beside || std::binary_search(body.input.contact_nodes.begin(), body.input.contact_nodes.end(),
-                                              static_cast<Index>(entry.row()));
+        beside = beside || std::ranges::binary_search(body.input.contact_nodes, static_cast<Index>(entry.row()));
       }
       if (!beside) correction = std::max(correction, std::abs(mass.coeff(i, i) / lumped[i] - 1.0));
     }

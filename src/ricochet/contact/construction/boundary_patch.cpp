@@ -23,7 +23,7 @@ Patches collect_patches(const Body& body, const std::vector<ContactPair>& pairs)
     const auto same = [&](const auto& patch) {
       return patch->obstacle == pairs[k].obstacle && patch->multipliers == pairs[k].multipliers;
     };
-    auto patch = pairs[k].between_bodies() ? patches.end() : std::find_if(patches.begin(), patches.end(), same);
+    auto patch = pairs[k].between_bodies() ? patches.end() : std::ranges::find_if(patches, same);
     if (patch == patches.end()) {
       patches.push_back(std::make_unique<BoundaryPatch>());
       patch = patches.end() - 1;
@@ -142,7 +142,7 @@ void number_points(const Patches& patches) {
                          i);
     }
   }
-  std::sort(order.begin(), order.end());
+  std::ranges::sort(order);
   for (std::size_t number = 0; number < order.size(); ++number) {
     const auto& [node, pair, p, i] = order[number];
     patches[p]->numbers[i] = static_cast<int>(number);

@@ -24,7 +24,7 @@ std::vector<Index> facets_of(const std::vector<ContactPair>& pairs) {
     result.insert(result.end(), pair.facets.begin(), pair.facets.end());
     result.insert(result.end(), pair.opposite_facets.begin(), pair.opposite_facets.end());
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
@@ -170,7 +170,7 @@ std::shared_ptr<const SparseRowMatrix> rotating_trace(const CurvedContactData& d
   std::vector<char> rotates(static_cast<std::size_t>(data.trace.rows()), 0);
   for (const CurvedContactData::Point& point : data.points)
     rotates[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
-  if (std::find(rotates.begin(), rotates.end(), 1) == rotates.end()) return nullptr;
+  if (std::ranges::find(rotates, 1) == rotates.end()) return nullptr;
   auto result = std::make_shared<SparseRowMatrix>(data.trace);
   result->prune([&](Index row, Index, double) { return rotates[static_cast<std::size_t>(row)] != 0; });
   return result;
@@ -183,7 +183,7 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
                                                       ContactRows& rows) {
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
-    const auto found = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
+    const auto found = std::ranges::find(data.obstacles, obstacle);
     const auto number = static_cast<std::size_t>(found - data.obstacles.begin());
     if (found == data.obstacles.end()) data.obstacles.push_back(obstacle);
     return number;
@@ -229,7 +229,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   const auto reaches_more = [](const ContactPair& pair) {
     return pair.large_sliding || (pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr);
   };
-  if (std::none_of(pairs.begin(), pairs.end(), reaches_more)) return;
+  if (std::ranges::none_of(pairs, reaches_more)) return;
   // Creates, at points in contact, the entries of free rigid bodies, and those of opposite surfaces.
   boundary.geometry->update(Vector::Zero(body.space->dof_count()), 0.0, nullptr, rows);
   // Numbers the initial rows 0, independent of the numbers of later updates.

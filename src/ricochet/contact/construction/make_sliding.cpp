@@ -92,8 +92,7 @@ SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t index, 
                            .offset = patch.conditions[index].gap};
   for (int k = 0; k < dimension; ++k) {
     point.is_free[static_cast<std::size_t>(k)] =
-        std::any_of(point.multiplier.trace.begin(), point.multiplier.trace.end(),
-                    [&](const auto& entry) { return is_free(entry.first, k); });
+        std::ranges::any_of(point.multiplier.trace, [&](const auto& entry) { return is_free(entry.first, k); });
   }
   return point;
 }
@@ -142,7 +141,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
       }
       return false;
     };
-    if (std::none_of(multiplier.trace.begin(), multiplier.trace.end(), moves)) {
+    if (std::ranges::none_of(multiplier.trace, moves)) {
       ++facing.held;
       continue;
     }
@@ -187,8 +186,7 @@ std::unique_ptr<ContactGeometry> make_sliding_geometry(const Body& body, const s
     for (const int point : patch->numbers) boundary.large_sliding[static_cast<std::size_t>(point)] = 1;
   }
   if (data.pairs.empty()) return nullptr;
-  std::sort(data.nodes.begin(), data.nodes.end(),
-            [](const auto& one, const auto& other) { return one.entry < other.entry; });
+  std::ranges::sort(data.nodes, [](const auto& one, const auto& other) { return one.entry < other.entry; });
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   // In diameters of the model.

@@ -36,8 +36,7 @@ std::vector<Index> of_marked_nodes(const DisplacementSpace& space, const std::ve
   std::vector<Index> result;
   for (const Index facet : facets) {
     const std::vector<Index> nodes = facet_nodes(space, {facet});
-    if (std::all_of(nodes.begin(), nodes.end(),
-                    [&](Index node) { return marked[static_cast<std::size_t>(node)] != 0; }))
+    if (std::ranges::all_of(nodes, [&](Index node) { return marked[static_cast<std::size_t>(node)] != 0; }))
       result.push_back(facet);
   }
   return result;
@@ -56,7 +55,7 @@ std::vector<Index> facets_in_trace(const FacetsAround& facets, const TiedNodes::
     const std::vector<Index> here = around(facets, node);
     result.insert(result.end(), here.begin(), here.end());
   }
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
@@ -81,7 +80,7 @@ RotatingPairsData::Point rotating_point(const Body& body, const BoundaryPatch& p
   for (const auto* const weights : {&patch.free_traces[index], &conditions.opposite}) {
     for (const auto& [node, weight] : *weights) point.nodes.push_back(node);
   }
-  std::sort(point.nodes.begin(), point.nodes.end());
+  std::ranges::sort(point.nodes);
   point.nodes.erase(std::unique(point.nodes.begin(), point.nodes.end()), point.nodes.end());
   return point;
 }

@@ -244,8 +244,8 @@ void BodyPairing::Implementation::make_nodal_points(const MultiplierSpace& space
       ++result.facing.uncovered;
       continue;
     }
-    const bool matches = std::any_of(facing.opposite.begin(), facing.opposite.end(),
-                                     [](const auto& entry) { return entry.second > 1.0 - at_node; });
+    const bool matches =
+        std::ranges::any_of(facing.opposite, [](const auto& entry) { return entry.second > 1.0 - at_node; });
     result.facing.matches = result.facing.matches && matches;
     result.conditions.push_back({facing.normal, facing.opposite, facing.gap, 0.0});
     result.multipliers.push_back(std::move(multiplier));
@@ -256,8 +256,8 @@ void BodyPairing::Implementation::make_nodal_points(const MultiplierSpace& space
 void BodyPairing::Implementation::remove_supported(const FreeComponent& is_free, BodyContact& result) const {
   result.facing.held = result.keep([&](const Multiplier& multiplier, const PointConditions& conditions) {
     const auto is_free_here = [&](const auto& entry) { return has_free_part(entry.first, conditions.normal, is_free); };
-    return std::any_of(multiplier.trace.begin(), multiplier.trace.end(), is_free_here) ||
-           std::any_of(conditions.opposite.begin(), conditions.opposite.end(), is_free_here);
+    return std::ranges::any_of(multiplier.trace, is_free_here) ||
+           std::ranges::any_of(conditions.opposite, is_free_here);
   });
 }
 

@@ -13,8 +13,8 @@ using Vector3 = Eigen::Vector3d;
 /// position. On quadrilaterals they are rational functions, and the rule is exact to nine digits
 /// (body_contact_test.cpp). On curved facets areas are those of the flat pieces, accurate to the order of the geometry.
 int segment_degree(const Body& body) {
-  const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
-                                     [](const CellBlock& block) { return is_simplex(block.shape); });
+  const bool simplices =
+      std::ranges::all_of(body.mesh->facets, [](const CellBlock& block) { return is_simplex(block.shape); });
   if (!simplices) return 2 * body.space->degree + 8;
   const int degree = 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
   return is_axisymmetric(body) ? degree + body.mesh->degree : degree;  // for the distance from the axis

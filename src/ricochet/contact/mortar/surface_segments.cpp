@@ -84,7 +84,7 @@ struct SegmentFinder::Cut {
 namespace {
 
 bool is_among(const std::vector<int>& facets, int facet) {
-  return std::binary_search(facets.begin(), facets.end(), facet);
+  return std::ranges::binary_search(facets, facet);
 }
 
 /// Whether the extent of a box along a unit vector overlaps the interval.
@@ -146,7 +146,7 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
   // Whether a nearer piece hides the point.
   const auto is_hidden = [&](const Cut& cut, const PlanePoint& at) {
     const double own = std::abs(cut.gap_at(at));
-    return std::any_of(cuts.begin(), cuts.end(), [&](const Cut& other) {
+    return std::ranges::any_of(cuts, [&](const Cut& other) {
       if (&other == &cut || !other.opposite.covers(at, view.plane)) return false;
       const double gap = std::abs(other.gap_at(at));
       return gap < own || (gap == own && other.opposite_piece < cut.opposite_piece);
@@ -157,8 +157,7 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
         opposite_
             .facets()[static_cast<std::size_t>(opposite_.pieces()[static_cast<std::size_t>(cut.opposite_piece)].facet)]
             .number;
-    auto segment = std::find_if(segments.begin(), segments.end(),
-                                [facet](const SurfaceSegment& one) { return one.opposite == facet; });
+    auto segment = std::ranges::find_if(segments, [facet](const SurfaceSegment& one) { return one.opposite == facet; });
     if (segment == segments.end()) segment = segments.insert(segments.end(), {facet, {}, {}, {}});
     const QuadratureRule& rule = view.plane ? interval_ : triangle_;
     const int parts = view.plane ? 1 : cut.common.count - 2;

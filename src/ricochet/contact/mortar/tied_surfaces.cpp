@@ -160,7 +160,7 @@ double move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& spa
         }
         // Nodes of the geometry that the displacement does not have move with the vertices around them.
         const std::vector<int>& vertices = vertices_of[static_cast<std::size_t>(k)];
-        if (!std::all_of(vertices.begin(), vertices.end(), [&](int v) { return tied.is_tied(own[v]); })) continue;
+        if (!std::ranges::all_of(vertices, [&](int v) { return tied.is_tied(own[v]); })) continue;
         Vector mean = Vector::Zero(d);
         for (const int v : vertices) mean += moved(own[v]) / static_cast<double>(vertices.size());
         moves[at[k]] = mean;

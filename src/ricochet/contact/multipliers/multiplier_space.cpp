@@ -34,8 +34,7 @@ std::string instability(const std::string& multipliers, CellShape facet, int dis
 bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch) {
   if (!patch.is_supported) return false;
   if (multiplier.node >= 0) return patch.is_supported(multiplier.node);
-  return std::all_of(multiplier.trace.begin(), multiplier.trace.end(),
-                     [&](const auto& entry) { return patch.is_supported(entry.first); });
+  return std::ranges::all_of(multiplier.trace, [&](const auto& entry) { return patch.is_supported(entry.first); });
 }
 
 std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchored) {

@@ -10,8 +10,8 @@ namespace {
 
 /// Degree of the rule on segments: exact for products of two shape functions on simplices and on parallelograms.
 int degree_on_segments(const Body& body) {
-  const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
-                                     [](const CellBlock& block) { return is_simplex(block.shape); });
+  const bool simplices =
+      std::ranges::all_of(body.mesh->facets, [](const CellBlock& block) { return is_simplex(block.shape); });
   return (simplices ? 2 : 4) * body.space->degree;
 }
 
@@ -68,7 +68,7 @@ void MovingSurfaces::enable_self_contact() {
       for (const Index node : nodes_of[static_cast<std::size_t>(facet)])
         result.insert(result.end(), at_node[node].begin(), at_node[node].end());
     }
-    std::sort(result.begin(), result.end());
+    std::ranges::sort(result);
     result.erase(std::unique(result.begin(), result.end()), result.end());
     return result;
   };

@@ -39,7 +39,7 @@ SelfContactSelection::SelfContactSelection(const SlidingPair& pair, Index nodes,
     std::vector<std::size_t>& near = neighbours_.emplace_back();
     for (const auto& [node, weight] : point.multiplier.trace)
       near.insert(near.end(), at_node[node].begin(), at_node[node].end());
-    std::sort(near.begin(), near.end());
+    std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
   }
 }
@@ -48,8 +48,8 @@ SelfContactSelection::SelfContactSelection(const SlidingPair& pair, Index nodes,
 bool SelfContactSelection::is_free(std::size_t point) const {
   const SlidingView* const view = views_[point];
   if (view == nullptr || !view->faces) return false;
-  bool result = std::none_of(anchors_[point].begin(), anchors_[point].end(),
-                             [&](Index node) { return is_faced_[static_cast<std::size_t>(node)] != 0; });
+  bool result =
+      std::ranges::none_of(anchors_[point], [&](Index node) { return is_faced_[static_cast<std::size_t>(node)] != 0; });
   visit_faced_nodes(*view, least_weight_,
                     [&](Index node) { result = result && is_anchor_[static_cast<std::size_t>(node)] == 0; });
   return result;
@@ -73,8 +73,8 @@ void SelfContactSelection::grow() {
 
 void SelfContactSelection::choose(const std::vector<const SlidingView*>& views) {
   views_ = views;
-  std::fill(is_faced_.begin(), is_faced_.end(), char{0});
-  std::fill(is_anchor_.begin(), is_anchor_.end(), char{0});
+  std::ranges::fill(is_faced_, char{0});
+  std::ranges::fill(is_anchor_, char{0});
   selected_.clear();
   grown_ = 0;
   for (std::size_t i = 0; i < choices_.size(); ++i) {

@@ -169,8 +169,7 @@ class SlidingContact final : public ContactGeometry {
     return view.faces ? view.gap : data_.unpaired_gap;
   }
   [[nodiscard]] const SlidingNode* find_node(Index entry) const {
-    const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
-                                        [](const SlidingNode& node, Index e) { return node.entry < e; });
+    const auto found = std::ranges::lower_bound(data_.nodes, entry, {}, &SlidingNode::entry);
     return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
   }
   [[nodiscard]] SlidingVector normal_at(const SlidingNode& node, const Vector& displacement) const {

@@ -29,7 +29,7 @@ Value& entry_of(std::vector<std::pair<Index, Value>>& entries, Index node, const
 
 template <class Value>
 void sort_by_node(std::vector<std::pair<Index, Value>>& entries) {
-  std::sort(entries.begin(), entries.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
+  std::ranges::sort(entries, [](const auto& one, const auto& other) { return one.first < other.first; });
 }
 
 /// n·ν from which a point counts fully, and up to which it is ignored.
@@ -143,7 +143,7 @@ void SlidingPair::Implementation::integrate_from(int facet, Content content, con
       const bool admits_depth = !is_self && !any_depth.empty() && any_depth[point] != 0;
       included[k] = !is_out && admits_depth == deep ? 1 : 0;
     }
-    if (std::find(included.begin(), included.end(), 1) == included.end()) continue;
+    if (std::ranges::find(included, 1) == included.end()) continue;
     const SlidingVector n = current_normals[static_cast<std::size_t>(facet)].normalized();
     const FacetSegments segments = surfaces.finder().find(facet, n, deep);
     if (!segments.segments.empty()) integrate(facet, segments, n, content, views);

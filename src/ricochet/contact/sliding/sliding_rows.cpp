@@ -63,14 +63,14 @@ void SlidingRows::write(const SlidingPair::Point& point, const SlidingView& view
   trace_.clear();
   for (const auto& [node, weight] : view.own) trace_.emplace_back(node, weight);
   for (const auto& [node, weight] : view.opposite) trace_.emplace_back(node, -weight);
-  std::sort(trace_.begin(), trace_.end());
+  std::ranges::sort(trace_);
   write_slips(point.number, rows);
 }
 
 void SlidingRows::write_plane(const SlidingPair::Point& point, const SlidingVector& normal, ContactRows& rows) {
   const Index d = dimension();
   trace_.assign(point.multiplier.trace.begin(), point.multiplier.trace.end());
-  std::sort(trace_.begin(), trace_.end());
+  std::ranges::sort(trace_);
   entries_.clear();
   for (const auto& [node, weight] : trace_) {
     for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, weight * normal[j]);

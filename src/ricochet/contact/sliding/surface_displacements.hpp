@@ -16,7 +16,7 @@ class SurfaceDisplacements {
   SurfaceDisplacements(const std::vector<std::unique_ptr<SlidingPair>>& pairs, Index dimension)
       : dimension_(dimension) {
     for (const auto& pair : pairs) nodes_.insert(nodes_.end(), pair->nodes().begin(), pair->nodes().end());
-    std::sort(nodes_.begin(), nodes_.end());
+    std::ranges::sort(nodes_);
     nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   }
 

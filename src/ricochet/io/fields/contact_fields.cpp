@@ -72,8 +72,8 @@ class ContactFields final : public FieldSource {
 };
 
 void ContactFields::evaluate(const State& state) {
-  std::fill(gap_.begin(), gap_.end(), std::numeric_limits<double>::quiet_NaN());
-  std::fill(status_.begin(), status_.end(), -1);
+  std::ranges::fill(gap_, std::numeric_limits<double>::quiet_NaN());
+  std::ranges::fill(status_, -1);
   const ContactBoundary& contact = problem_.contact;
   problem_.node_gaps(state.displacement, state.time, node_gap_);
   const StepForces& forces = state.forces;
@@ -118,7 +118,7 @@ void ContactFields::evaluate(const ContactRows& rows, const Vector& normal, cons
                              Stresses& stresses) {
   if (!stresses.is_requested) return;
   const ContactBoundary& contact = problem_.contact;
-  std::fill(stresses.pressure.begin(), stresses.pressure.end(), 0.0);
+  std::ranges::fill(stresses.pressure, 0.0);
   contact.recover_pressure(normal, node_pressure_);
   add_up_pressures();
   for (Index i = 0; i < node_pressure_.size(); ++i) {

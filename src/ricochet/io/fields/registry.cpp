@@ -33,11 +33,11 @@ const std::vector<FieldRegistration>& registrations() {
 }  // namespace
 
 bool FieldContext::is_requested(const std::string& name) const {
-  return std::find(requested.begin(), requested.end(), name) != requested.end();
+  return std::ranges::find(requested, name) != requested.end();
 }
 
 bool FieldContext::any_is_requested(const std::vector<std::string>& names) const {
-  return std::any_of(names.begin(), names.end(), [this](const std::string& name) { return is_requested(name); });
+  return std::ranges::any_of(names, [this](const std::string& name) { return is_requested(name); });
 }
 
 std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext& context) {
@@ -56,7 +56,7 @@ std::vector<std::string> field_names() {
 }
 
 std::vector<std::string> expand_field_names(const std::vector<std::string>& names) {
-  if (std::find(names.begin(), names.end(), "all") != names.end()) return field_names();
+  if (std::ranges::find(names, "all") != names.end()) return field_names();
   if (!names.empty()) return names;
   return {"displacement", "velocity", "contact_pressure", "friction_traction", "gap", "contact_status", "von_mises"};
 }

@@ -50,7 +50,7 @@ class StressFields final : public FieldSource {
   static void find_principal(const std::vector<double>& stress, std::vector<double>& result) {
     for (std::size_t i = 0; 3 * i < result.size(); ++i) {
       const std::array<double, 3> values = principal_stresses(stress.data() + tensor_components * i);
-      std::copy(values.begin(), values.end(), result.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      std::ranges::copy(values, result.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
   }
   CellStress stress_of_;

@@ -159,7 +159,7 @@ CellShapeDescription product_of_simplices(CellShape shape, const std::vector<int
   CellShapeDescription result;
   for (const int d : dimensions) result.dimension += d;
   result.vertices = vertices_of_product(dimensions);
-  result.has_centre_node = dimensions.size() > 1 && *std::max_element(dimensions.begin(), dimensions.end()) == 1;
+  result.has_centre_node = dimensions.size() > 1 && *std::ranges::max_element(dimensions) == 1;
   result.lagrange = [dimensions](int degree, const Eigen::Vector3d& node, const Eigen::Vector3d& at) {
     return lagrange_on_product(dimensions, degree, node, at);
   };

@@ -171,7 +171,7 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     if (surface.in_space() && (own[1] == own[2] || own[2] == own[0])) continue;
     if (own[0] == own[1]) continue;
     std::array<int, 3> key = own;  // identifies a facet independently of its first corner
-    if (surface.in_space()) std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    if (surface.in_space()) std::rotate(key.begin(), std::ranges::min_element(key), key.end());
     if (width > 0.0 && !shown.try_emplace(key, 1).second) continue;
     if (side < 0.0) std::swap(own[0], own[1]);
     result.cells.insert(result.cells.end(), own.begin(), own.begin() + (surface.in_space() ? 3 : 2));
@@ -194,7 +194,7 @@ ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
   std::vector<int> shown;
   surface_.tree().visit([&](const BoxTree::Box& box) { return is_small || box.exteriorDistance(middle) < reach; },
                         [&](int facet) { shown.push_back(facet); });
-  std::sort(shown.begin(), shown.end());
+  std::ranges::sort(shown);
   constexpr double coarser = 1.2;
   const std::size_t corners = surface_.in_space() ? 4 : 2;
   double width = 0.0;

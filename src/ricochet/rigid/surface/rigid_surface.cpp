@@ -55,7 +55,7 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
   const auto before = [&](std::size_t a, std::size_t b) {
     return std::lexicographical_compare(at(a).begin(), at(a).end(), at(b).begin(), at(b).end());
   };
-  std::sort(order.begin(), order.end(), before);
+  std::ranges::sort(order, before);
   facets_.resize(facets.corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || before(order[i - 1], order[i])) corners_.push_back(at(order[i]));
@@ -78,8 +78,7 @@ bool RigidSurface::join_borders() {
   const Vector3 direction = Vector3(0.6182, 0.5432, 0.5681).normalized();
   const auto at = [&](int corner) -> const Vector3& { return corners_[static_cast<std::size_t>(corner)]; };
   const auto height = [&](int corner) { return direction.dot(at(corner)); };
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return std::pair(height(a), a) < std::pair(height(b), b); });
+  std::ranges::sort(order, [&](int a, int b) { return std::pair(height(a), a) < std::pair(height(b), b); });
   DisjointSets sets(static_cast<Index>(corners_.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
     for (std::size_t j = i + 1; j < order.size() && height(order[j]) - height(order[i]) <= reach; ++j) {
@@ -130,7 +129,7 @@ void RigidSurface::check_edge(std::span<const Side> sides, const std::string& na
   if (sides.size() == 1 || (sides.size() == 2 && sides[0].forward != sides[1].forward)) return;
   const auto sorted = [&](const Side& side) {
     std::array<int, 3> corners = facets_[static_cast<std::size_t>(side.facet)];
-    std::sort(corners.begin(), corners.end());
+    std::ranges::sort(corners);
     return corners;
   };
   for (std::size_t k = 1; k < sides.size(); ++k) {
@@ -169,7 +168,7 @@ std::vector<RigidSurface::Side> RigidSurface::sorted_sides() const {
       sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(i), k, in_space_ ? a < b : k == 0});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::ranges::sort(sides, [](const Side& a, const Side& b) {
     return std::array{a.low, a.high, a.facet} < std::array{b.low, b.high, b.facet};
   });
   return sides;
@@ -333,8 +332,7 @@ RigidSurface::Foot RigidSurface::nearest(const Vector3& point) const {
     waiting[count++] = in_order ? second : first;
     waiting[count++] = in_order ? first : second;
   }
-  const int touched = static_cast<int>(
-      std::count_if(closest.corners.begin(), closest.corners.end(), [](int corner) { return corner >= 0; }));
+  const int touched = static_cast<int>(std::ranges::count_if(closest.corners, [](int corner) { return corner >= 0; }));
   if (touched == corner_count()) return {closest.position, normals_[at], true, false};
   if (touched == 2) {
     const int a = closest.corners[0], b = closest.corners[1];

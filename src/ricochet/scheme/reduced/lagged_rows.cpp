@@ -25,13 +25,12 @@ void LaggedRows::start(const State& state) {
     lagged_ = std::make_shared<ContactRows>(*state.forces.rows);
     read_only_ = lagged_;
     // Revision numbers from another count.
-    std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
+    std::ranges::fill(lagged_->revision, ++revision_);
   }
   if (remembered->second.size() != row_value_count(*lagged_))
     Snapshot::refuse(memory_of_rows, "has a length that does not fit this problem");
   is_new_ = false;
-  if (set_row_values(remembered->second, *lagged_))
-    std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
+  if (set_row_values(remembered->second, *lagged_)) std::ranges::fill(lagged_->revision, ++revision_);
 }
 
 void LaggedRows::replace_rows(const Vector& motion, Stage& stage) {
@@ -61,7 +60,7 @@ void LaggedRows::renew() {
       *lagged_ = *exact;
     }
     is_stale_ = false;
-    std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
+    std::ranges::fill(lagged_->revision, ++revision_);
     is_new_ = true;
     return;
   }

@@ -21,7 +21,7 @@ constexpr double same_damping = 1e-12;
 
 void MasslessContactStep::analyse(const SemidiscreteProblem& problem) {
   const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
-  if (std::any_of(problem.contact_dofs.begin(), problem.contact_dofs.end(), has_inertia)) {
+  if (std::ranges::any_of(problem.contact_dofs, has_inertia)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes, which it keeps in "
                             "equilibrium: set mass.type = \"equivalent\", or use scheme \"contact-stabilized\", which "

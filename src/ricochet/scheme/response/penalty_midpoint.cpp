@@ -134,7 +134,7 @@ class PenaltyMidpoint final : public ForcedMidpoint {
         if ((unforced.gap_before[i] < 0.0 || gap_[i] < 0.0) && !is_there) points_.push_back(i);
       }
       if (points_.size() == before) return before > 0;
-      std::sort(points_.begin(), points_.end());
+      std::ranges::sort(points_);
       const Matrix& w = response_.among(problem, rows, points_, stages);
       normal(points_) = penalty_forces(w, {stiffness_(points_), unforced.gap_before(points_), unforced.gap(points_)});
       gap_ = unforced.gap;

@@ -24,7 +24,7 @@ void require_semi_explicit(const SemidiscreteProblem& problem, const std::string
                             scheme));
   }
   const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
-  if (std::any_of(problem.contact_dofs.begin(), problem.contact_dofs.end(), has_inertia)) {
+  if (std::ranges::any_of(problem.contact_dofs, has_inertia)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes: their motion follows "
                             "from their own equilibrium, contact included; {}",

@@ -143,12 +143,11 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
 
 /// Describes which forces act at these nodes. At nodes that contact and a support share, only the sum of both is known.
 std::string describe_boundary_forces(const SemidiscreteProblem& problem, const std::vector<Index>& nodes) {
-  const auto among = [&nodes](Index node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
+  const auto among = [&nodes](Index node) { return std::ranges::binary_search(nodes, node); };
   const std::vector<Index>& dofs = problem.supports.dofs();
-  const bool is_supported =
-      std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return among(dof / problem.dimension); });
+  const bool is_supported = std::ranges::any_of(dofs, [&](Index dof) { return among(dof / problem.dimension); });
   const std::vector<Index> touching = problem.contact.unique_nodes();
-  const auto shared = std::count_if(touching.begin(), touching.end(), among);
+  const auto shared = std::ranges::count_if(touching, among);
   if (!is_supported && shared == 0)
     return "neither a support nor a contact acts at its nodes, and its force is zero (loads are not counted)";
   if (shared == 0) return "its force is that of the supports at its nodes (loads are not counted)";
@@ -163,8 +162,7 @@ std::string describe_boundary_forces(const SemidiscreteProblem& problem, const s
 void find_boundary(const ProbeContext& probe, ProbeTargets& targets) {
   targets.nodes = facet_nodes(*probe.body.space, probe.boundary("boundary"));
   const TiedNodes* const tied = probe.body.tied;
-  if (tied != nullptr &&
-      std::any_of(targets.nodes.begin(), targets.nodes.end(), [tied](Index node) { return tied->is_tied(node); })) {
+  if (tied != nullptr && std::ranges::any_of(targets.nodes, [tied](Index node) { return tied->is_tied(node); })) {
     log::warning(
         fmt::format("probe \"{}\": forces transmitted by a tie are not included in the force of boundary \"{}\": "
                     "they are internal to one body",

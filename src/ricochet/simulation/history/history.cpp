@@ -48,7 +48,7 @@ Columns with_columns_of(const std::vector<std::shared_ptr<Sensor>>& sensors, Col
 }  // namespace
 
 std::size_t column_index(const std::vector<std::string>& columns, const std::string& name) {
-  const auto found = std::find(columns.begin(), columns.end(), name);
+  const auto found = std::ranges::find(columns, name);
   if (found == columns.end()) throw std::logic_error("no column " + name);
   return static_cast<std::size_t>(found - columns.begin());
 }
@@ -160,7 +160,7 @@ void HistoryRecorder::find_momenta(const Vector& velocity) {
 
 void HistoryRecorder::sum_of_bodies(const Vector& values) {
   const auto d = static_cast<std::size_t>(problem_.dimension);
-  std::fill(now_.body_momenta.begin(), now_.body_momenta.end(), 0.0);
+  std::ranges::fill(now_.body_momenta, 0.0);
   for (Index node = 0; node < node_weight_.size(); ++node) {
     if (problem_.is_of_free_body(node)) break;
     double* const own =
@@ -184,7 +184,7 @@ void HistoryRecorder::find_contact_state(const Vector& gap) {
   if (!problem_.contact.touches_itself) return;
   is_active_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
   problem_.contact.geometry->deactivate_points(is_active_);
-  now_.left_out = static_cast<double>(std::count(is_active_.begin(), is_active_.end(), 0));
+  now_.left_out = static_cast<double>(std::ranges::count(is_active_, 0));
 }
 
 Observation Observer::observe(const State& state) {

@@ -157,7 +157,7 @@ bool touches_another_body(const ProbeContext& setting, Index node) {
   const double limit = coincident * enclosing_diameter(positions);
   const auto body_of = [&](Index any) { return setting.bodies.connected.of_node[static_cast<std::size_t>(any)]; };
   const std::vector<Index>& nodes = setting.problem.contact.nodes;
-  return std::any_of(nodes.begin(), nodes.end(), [&](Index other) {
+  return std::ranges::any_of(nodes, [&](Index other) {
     return (positions.col(other) - positions.col(node)).norm() <= limit && body_of(other) != body_of(node);
   });
 }
@@ -167,7 +167,7 @@ void add_node(const ProbeContext& setting, const std::string& name, Index node, 
   const DisplacementSpace& space = *setting.body.space;
   const ContactBoundary& contact = setting.problem.contact;
   Probe probe{name, node, distance, -1, space.number[static_cast<std::size_t>(node)]};
-  const auto entries = std::count(contact.nodes.begin(), contact.nodes.end(), node);
+  const auto entries = std::ranges::count(contact.nodes, node);
   if (entries > 0) probe.contact_node = nearest_contact(contact, node);
   if (entries > 0 && std::isnan(contact.node_initial_gap[probe.contact_node]))
     log::info(fmt::format("probe \"{}\" is at a node that does not face the other body: it has no gap", name));
@@ -234,8 +234,9 @@ void find_segment(const ProbeContext& setting, ProbeTargets& targets) {
                    fmt::format("no node lies within {:.3g} of the segment; the nearest is {:.3g} away: set \"within\"",
                                limit, nearest));
   }
-  std::sort(found.begin(), found.end(),
-            [](const Found& a, const Found& b) { return std::pair(a.along, a.number) < std::pair(b.along, b.number); });
+  std::ranges::sort(found, [](const Found& a, const Found& b) {
+    return std::pair(a.along, a.number) < std::pair(b.along, b.number);
+  });
   for (std::size_t i = 0; i < found.size(); ++i)
     add_node(setting, fmt::format("{}.{}", setting.name, i), found[i].node, found[i].distance, targets);
   log::info(fmt::format("probe \"{}\": {} along the segment", setting.name, counted(found.size(), "node")));

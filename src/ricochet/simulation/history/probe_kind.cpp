@@ -23,10 +23,10 @@ RICOCHET_DEFINE_REGISTRY(probe_registry, ProbeKind, "probe", RICOCHET_PROBES)
 const Registration<ProbeKind>* find_probe_kind(const std::function<bool(const std::string&)>& has_key) {
   const auto is_it = [&](const Registration<ProbeKind>& kind) {
     const std::vector<std::string>& keys = kind.alternatives.front();
-    return std::any_of(keys.begin(), keys.end(), has_key);
+    return std::ranges::any_of(keys, has_key);
   };
   const auto& all = probe_registry().all();
-  const auto found = std::find_if(all.begin(), all.end(), is_it);
+  const auto found = std::ranges::find_if(all, is_it);
   return found == all.end() ? nullptr : &*found;
 }
 

@@ -78,9 +78,9 @@ void ImpactRecorder::add_collision_pairs_of_ranks(const std::vector<ContactPair>
       const long count = std::lround(problem_.ranks->sum(points));
       if (count == 0) continue;
       const std::string& obstacle = pairs[pair].obstacle_name;
-      const auto found = std::find_if(
-          collision_pairs_.begin(), collision_pairs_.end(),
-          [&](const CollisionPair& collision) { return collision.body == body && collision.obstacle == obstacle; });
+      const auto found = std::ranges::find_if(collision_pairs_, [&](const CollisionPair& collision) {
+        return collision.body == body && collision.obstacle == obstacle;
+      });
       if (found == collision_pairs_.end()) {
         collision_pairs_.push_back({body, -1, obstacle, count, false});
       } else {
@@ -102,10 +102,9 @@ int ImpactRecorder::free_body_of(Index point) const {
 }
 
 void ImpactRecorder::add_part(Index point, int body, int other, const std::string& obstacle, double part) {
-  const auto found =
-      std::find_if(collision_pairs_.begin(), collision_pairs_.end(), [&](const CollisionPair& collision) {
-        return collision.body == body && collision.other == other && collision.obstacle == obstacle;
-      });
+  const auto found = std::ranges::find_if(collision_pairs_, [&](const CollisionPair& collision) {
+    return collision.body == body && collision.other == other && collision.obstacle == obstacle;
+  });
   parts_.push_back({point, static_cast<std::size_t>(found - collision_pairs_.begin()), part});
   if (found == collision_pairs_.end()) {
     collision_pairs_.push_back({body, other, obstacle, 1, false});
@@ -116,8 +115,7 @@ void ImpactRecorder::add_part(Index point, int body, int other, const std::strin
 
 void ImpactRecorder::begin_inside(const std::vector<Index>& points) {
   for (const PointPart& each : parts_) {
-    if (std::find(points.begin(), points.end(), each.point) != points.end())
-      collision_pairs_[each.collision].begins_inside = true;
+    if (std::ranges::find(points, each.point) != points.end()) collision_pairs_[each.collision].begins_inside = true;
   }
   for (CollisionPair& collision : collision_pairs_)
     collision.begins_inside = problem_.ranks->any(collision.begins_inside);

@@ -307,7 +307,7 @@ std::vector<Impact> ImpactRecorder::impacts() const {
   for (const Interval& interval : open_) {
     if (interval.phase != no_contact) result.push_back(describe(interval));
   }
-  std::stable_sort(result.begin(), result.end(), [](const Impact& a, const Impact& b) { return a.begin < b.begin; });
+  std::ranges::stable_sort(result, {}, &Impact::begin);
   return result;
 }
 

@@ -50,7 +50,7 @@ void RigidBodies::add_free_bodies() {
     const std::vector<Index>& dofs = problem_.supports.dofs();
     const Index first = body->centre_node() * d, rotations = body->gyration().size();
     const auto supported_dofs =
-        std::count_if(dofs.begin(), dofs.end(), [&](Index dof) { return dof >= first && dof < first + d + rotations; });
+        std::ranges::count_if(dofs, [&](Index dof) { return dof >= first && dof < first + d + rotations; });
     added.held = supported_dofs == d + rotations;
   }
   motion_.resize(bodies_.size());

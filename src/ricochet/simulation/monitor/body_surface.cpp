@@ -22,13 +22,13 @@ BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& piec
   const std::size_t corners = plane_ ? 2 : 3;
   for (const Piece& piece : pieces)
     nodes_.insert(nodes_.end(), piece.begin(), piece.begin() + static_cast<long>(corners));
-  std::sort(nodes_.begin(), nodes_.end());
+  std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   first_piece_.assign(nodes_.size() + 1, 0);
   for (const Piece& piece : pieces) {
     Corners own{-1, -1, -1};
     for (std::size_t k = 0; k < corners; ++k) {
-      own[k] = static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), piece[k]) - nodes_.begin());
+      own[k] = static_cast<int>(std::ranges::lower_bound(nodes_, piece[k]) - nodes_.begin());
       ++first_piece_[static_cast<std::size_t>(own[k]) + 1];
     }
     pieces_.push_back(own);
@@ -96,7 +96,7 @@ Eigen::Vector3d BodySurface::normal_at(int node) const {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (const int piece : around(node)) {
     const Corners& own = pieces_[static_cast<std::size_t>(piece)];
-    const auto here = static_cast<std::size_t>(std::find(own.begin(), own.end(), node) - own.begin());
+    const auto here = static_cast<std::size_t>(std::ranges::find(own, node) - own.begin());
     const double weight =
         plane_ ? 1.0 : angle_between(at(own[(here + 1) % 3]) - at(own[here]), at(own[(here + 2) % 3]) - at(own[here]));
     normal += normal_of(piece) * weight;
@@ -114,7 +114,7 @@ Eigen::Vector3d BodySurface::normal_at(const Closest& nearest) const {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (const int piece : around(corners[0])) {
     const Corners& own = pieces_[static_cast<std::size_t>(piece)];
-    if (std::find(own.begin(), own.end(), corners[1]) != own.end()) normal += normal_of(piece);
+    if (std::ranges::find(own, corners[1]) != own.end()) normal += normal_of(piece);
   }
   return normal;
 }

@@ -44,7 +44,7 @@ void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& node_all
   for (const ContactNodeAllowance& one : node_allowances) {
     const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
     const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
-    const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
+    const auto at = std::ranges::lower_bound(nodes, one.node);
     if (at == nodes.end() || *at != one.node) continue;
     std::vector<Allowance>& list = allowances_[{of, one.other}];
     list.resize(nodes.size());
@@ -129,8 +129,8 @@ double BodyWatch::check_nodes(int of, int inside, double time) {
 }
 
 bool BodyWatch::has_found(int first, int second) const {
-  return std::any_of(pairs_.begin(), pairs_.end(),
-                     [&](const BodyPair& pair) { return pair.first == first && pair.second == second; });
+  return std::ranges::any_of(pairs_,
+                             [&](const BodyPair& pair) { return pair.first == first && pair.second == second; });
 }
 
 BodyPair& BodyWatch::pair_of(int first, int second) {

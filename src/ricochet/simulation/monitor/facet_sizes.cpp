@@ -42,8 +42,7 @@ namespace {
 void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const ContactPair& pair, int number,
                        const std::vector<int>& body_of_node, std::vector<ContactNodeAllowance>& result) {
   const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
-  const double size = std::max(*std::max_element(own.largest.begin(), own.largest.end()),
-                               *std::max_element(opposite.largest.begin(), opposite.largest.end()));
+  const double size = std::max(*std::ranges::max_element(own.largest), *std::ranges::max_element(opposite.largest));
   const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
   const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
   std::map<Index, Index> entries;

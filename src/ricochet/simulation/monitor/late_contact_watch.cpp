@@ -43,13 +43,13 @@ void LateContactWatch::check(const State& state) {
   bool gaps_evaluated = false;
   for (Contact& contact : contacts_) {
     if (contact.is_warned) continue;
-    const bool acts = std::any_of(contact.points.begin(), contact.points.end(),
-                                  [&](Index point) { return state.forces.normal_reaction[point] > 0.0; });
+    const bool acts =
+        std::ranges::any_of(contact.points, [&](Index point) { return state.forces.normal_reaction[point] > 0.0; });
     if (acts) continue;
     if (!gaps_evaluated) problem_.node_gaps(state.displacement, state.time, gap_);
     gaps_evaluated = true;
-    const auto inside = std::find_if(contact.nodes.begin(), contact.nodes.end(),
-                                     [&](const Node& node) { return gap_[node.entry] < -node.allowance; });
+    const auto inside =
+        std::ranges::find_if(contact.nodes, [&](const Node& node) { return gap_[node.entry] < -node.allowance; });
     if (inside == contact.nodes.end()) continue;
     contact.is_warned = true;
     warn(contact, inside->entry, state.time);

@@ -50,7 +50,7 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
     }
     if (!rim.inside.empty() && !rim.outside.empty()) rim_.push_back(std::move(rim));
   }
-  std::sort(alone.begin(), alone.end());
+  std::ranges::sort(alone);
   alone.erase(std::unique(alone.begin(), alone.end()), alone.end());
 }
 
@@ -99,7 +99,7 @@ void ObstacleWatch::check_node(std::size_t obstacle, Index node, const State& st
 }
 
 bool ObstacleWatch::is_warned(int pair) const {
-  return std::any_of(rims_.begin(), rims_.end(), [pair](const RimContact& rim) { return rim.pair == pair; });
+  return std::ranges::any_of(rims_, [pair](const RimContact& rim) { return rim.pair == pair; });
 }
 
 /// Uses the gap at nodes where no contact point is anchored.
@@ -119,7 +119,7 @@ void ObstacleWatch::check_rim(const RimFacet& facet, const State& state) {
     const Index node = contact.nodes[static_cast<std::size_t>(entry)];
     const double here = gap(facet.obstacle, node, u);
     const Eigen::Vector3d from = in_space(position_);
-    const bool is_flat = std::all_of(facet.outside.begin(), facet.outside.end(), [&](Index other) {
+    const bool is_flat = std::ranges::all_of(facet.outside, [&](Index other) {
       const double rise = gap(facet.obstacle, other, u) - here;
       return rise < flat_slope * (in_space(position_) - from).norm();
     });

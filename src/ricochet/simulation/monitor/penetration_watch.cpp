@@ -41,7 +41,7 @@ std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::v
   for (const CellFacet& facet : boundary) {
     for (const Index node : nodes_of_facet(cells, facet)) nodes.push_back(node);
   }
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
@@ -49,8 +49,8 @@ std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::v
 }  // namespace
 
 const UnwatchedPenetration* PenetrationReport::deepest() const {
-  const auto largest = std::max_element(
-      found.begin(), found.end(), [](const auto& a, const auto& b) { return a.relative_depth < b.relative_depth; });
+  const auto largest =
+      std::ranges::max_element(found, [](const auto& a, const auto& b) { return a.relative_depth < b.relative_depth; });
   return largest == found.end() ? nullptr : &*largest;
 }
 
@@ -161,7 +161,7 @@ void PenetrationWatch::warn_of(const BodyPair& pair) const {
     std::vector<std::string> names;
     for (const ContactPair* contact : contacts)
       names.push_back(fmt::format("\"{}\" and \"{}\"", contact->first_group(), contact->second_group()));
-    const bool follows = std::all_of(contacts.begin(), contacts.end(), [](const auto* c) { return c->large_sliding; });
+    const bool follows = std::ranges::all_of(contacts, [](const auto* c) { return c->large_sliding; });
     why = fmt::format("the contact of {} does not reach that far{}", fmt::join(names, ", "),
                       follows ? "; extend the groups"
                               : ", or its groups did not face each other there; extend the groups, or pair them with "
@@ -194,8 +194,8 @@ std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, in
   std::vector<const ContactPair*> result;
   const auto contains_node_of = [&](const std::vector<Index>& facets, int body) {
     const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
-    return std::any_of(nodes.begin(), nodes.end(),
-                       [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
+    return std::ranges::any_of(
+        nodes, [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
   };
   for (const ContactPair& pair : pairs_) {
     if (!pair.has_two_sides()) continue;
@@ -214,7 +214,7 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
   for (const ContactPair& pair : pairs_) {
     if (pair.obstacle != named_[obstacle].obstacle) continue;
     const std::vector<Index> nodes = facet_nodes(*body_.space, pair.facets);
-    if (std::binary_search(nodes.begin(), nodes.end(), node))
+    if (std::ranges::binary_search(nodes, node))
       return fmt::format("it belongs to the contact group \"{}\", but supports hold it", pair.group);
     groups.push_back(pair.group);
   }
@@ -230,16 +230,16 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
 }
 
 bool PenetrationWatch::is_on_boundary(Index node) const {
-  return std::any_of(bodies_.boundary.begin(), bodies_.boundary.end(), [&](const CellFacet& facet) {
+  return std::ranges::any_of(bodies_.boundary, [&](const CellFacet& facet) {
     const std::vector<Index> nodes = nodes_of_facet(body_.space->cells, facet);
-    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+    return std::ranges::find(nodes, node) != nodes.end();
   });
 }
 
 std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
   std::vector<std::string> names;
   for (const BoundaryGroup& group : boundary_groups_) {
-    if (std::binary_search(group.nodes.begin(), group.nodes.end(), node)) names.push_back(group.name);
+    if (std::ranges::binary_search(group.nodes, node)) names.push_back(group.name);
   }
   return names;
 }
@@ -314,7 +314,7 @@ PenetrationReport PenetrationWatch::report() const {
   for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
   result.self_penetration_checks = self_watch_.checks();
   const auto is_free = [](const NamedObstacle& one) { return one.obstacle->free_motion() != nullptr; };
-  if (named_.size() > 1 && std::any_of(named_.begin(), named_.end(), is_free))
+  if (named_.size() > 1 && std::ranges::any_of(named_, is_free))
     result.not_watched.emplace_back("rigid bodies against each other and other obstacles");
   if (const double ignored = self_watch_.ignored_motion(); ignored > max_ignored_motion) {
     result.not_watched.push_back(

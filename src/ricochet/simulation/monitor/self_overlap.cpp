@@ -51,7 +51,7 @@ bool is_in_triangle(const Vector3& point, const Vector3& a, const Vector3& b, co
 }
 
 bool has_corner(const BodySurface::Corners& corners, int node) {
-  return std::find(corners.begin(), corners.end(), node) != corners.end();
+  return std::ranges::find(corners, node) != corners.end();
 }
 
 Vector3 mirrored(const Vector3& vector) {
@@ -102,8 +102,7 @@ std::optional<SelfOverlap::Found> SelfOverlap::at(int node, double* clearance) c
 bool SelfOverlap::leads_out(int node, const Vector3& direction) const {
   const std::span<const int> around = surface_.around(node);
   const double least = least_lead * direction.norm();
-  return std::all_of(around.begin(), around.end(),
-                     [&](int piece) { return surface_.normal_of(piece).dot(direction) > least; });
+  return std::ranges::all_of(around, [&](int piece) { return surface_.normal_of(piece).dot(direction) > least; });
 }
 
 /// With a mirror image, a ray beyond the axis passes through the image, as its own image passes through the surface.

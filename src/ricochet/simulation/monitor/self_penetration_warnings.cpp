@@ -46,15 +46,14 @@ void PenetrationWatch::warn_of(const SelfPenetration& found) const {
 std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenetration& found) const {
   std::map<std::string, std::size_t> sizes;
   for (const BoundaryGroup& group : boundary_groups_) {
-    const bool is_own = std::all_of(group.nodes.begin(), group.nodes.end(), [&](Index node) {
-      return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body;
-    });
+    const bool is_own = std::ranges::all_of(
+        group.nodes, [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
     if (is_own && !group.name.starts_with('[')) sizes[group.name] = group.nodes.size();  // no union of groups
   }
   const auto smallest = [&](const std::vector<std::string>& names, const std::vector<std::string>& among) {
     std::string best;
     for (const std::string& name : names) {
-      const bool may = sizes.contains(name) && std::find(among.begin(), among.end(), name) != among.end();
+      const bool may = sizes.contains(name) && std::ranges::find(among, name) != among.end();
       if (may && (best.empty() || sizes[name] < sizes[best])) best = name;
     }
     return best;
@@ -103,10 +102,8 @@ UnwatchedPenetration PenetrationWatch::self_penetration_at_contact(const SelfPen
 std::vector<std::string> PenetrationWatch::groups_of_facet(const std::array<Index, 3>& nodes) const {
   std::vector<std::string> names;
   for (const BoundaryGroup& group : boundary_groups_) {
-    const auto has = [&](Index node) {
-      return node < 0 || std::binary_search(group.nodes.begin(), group.nodes.end(), node);
-    };
-    if (std::all_of(nodes.begin(), nodes.end(), has)) names.push_back(group.name);
+    const auto has = [&](Index node) { return node < 0 || std::ranges::binary_search(group.nodes, node); };
+    if (std::ranges::all_of(nodes, has)) names.push_back(group.name);
   }
   return names;
 }

@@ -33,8 +33,7 @@ std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const Bod
   for (const CellFacet& facet : bodies.boundary) {
     const std::vector<Index> nodes = nodes_of_facet(body.space->cells, facet);
     // A facet on the axis is not part of the surface.
-    if (is_axisymmetric(body) &&
-        std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return is_on_axis(body, node); }))
+    if (is_axisymmetric(body) && std::ranges::all_of(nodes, [&](Index node) { return is_on_axis(body, node); }))
       continue;
     result[static_cast<std::size_t>(bodies.connected.of_node[static_cast<std::size_t>(nodes[0])])].push_back(facet);
   }
@@ -57,7 +56,7 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
     nodes = {pair.tied, facet_nodes(*body.space, pair.facets), facet_nodes(*body.space, pair.opposite_facets)};
     for (const auto* const facets : {&pair.facets, &pair.opposite_facets}) {
       const std::vector<double> sizes = facet_sizes(body, *facets).largest;
-      nodes.allowance = std::max(nodes.allowance, 0.5 * *std::max_element(sizes.begin(), sizes.end()));
+      nodes.allowance = std::max(nodes.allowance, 0.5 * *std::ranges::max_element(sizes));
     }
   }
   const std::vector<std::vector<CellFacet>> facets = facets_of_bodies(body, bodies);
@@ -98,21 +97,19 @@ void SelfWatch::set_contacts(const std::vector<PairNodes>& pairs, const ContactB
                              WatchedBody& watched) {
   const std::vector<Index>& nodes = watched.surface.nodes();
   const auto number_of = [&](Index node) {
-    const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
+    const auto found = std::ranges::lower_bound(nodes, node);
     return found != nodes.end() && *found == node ? static_cast<std::size_t>(found - nodes.begin()) : nodes.size();
   };
   const auto is_here = [&](Index node) { return number_of(node) < nodes.size(); };
   const auto contact_of = [&](std::size_t at, int pair) {
     std::vector<NodeContact>& contacts = watched.contacts[at];
-    const auto found =
-        std::find_if(contacts.begin(), contacts.end(), [&](const NodeContact& c) { return c.pair == pair; });
+    const auto found = std::ranges::find_if(contacts, [&](const NodeContact& c) { return c.pair == pair; });
     return found == contacts.end() ? nullptr : &*found;
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const PairNodes& pair = pairs[k];
     // In a contact with another body, this body may penetrate itself.
-    const bool is_with_itself = std::any_of(pair.own.begin(), pair.own.end(), is_here) &&
-                                std::any_of(pair.opposite.begin(), pair.opposite.end(), is_here);
+    const bool is_with_itself = std::ranges::any_of(pair.own, is_here) && std::ranges::any_of(pair.opposite, is_here);
     for (const bool opposite : {false, true}) {
       for (const Index node : opposite ? pair.opposite : pair.own) {
         const std::size_t at = number_of(node);
@@ -272,12 +269,12 @@ const SelfWatch::NodeContact* SelfWatch::contact_at(const WatchedBody& watched, 
     const auto faces = [&](int corner) {
       if (corner < 0) return true;
       const std::vector<NodeContact>& there = watched.contacts[static_cast<std::size_t>(corner)];
-      return std::any_of(there.begin(), there.end(), [&](const NodeContact& other) {
+      return std::ranges::any_of(there, [&](const NodeContact& other) {
         return other.pair == contact.pair && ((contact.own && other.opposite) || (contact.opposite && other.own));
       });
     };
     const BodySurface::Corners& corners = watched.surface.pieces()[static_cast<std::size_t>(piece)];
-    if (std::all_of(corners.begin(), corners.end(), faces)) return &contact;
+    if (std::ranges::all_of(corners, faces)) return &contact;
   }
   return nullptr;
 }
@@ -319,14 +316,13 @@ bool SelfWatch::fits(const SelfPenetration& found) const {
   const auto is_node = [this](Index node) { return node >= -1 && node < positions_.cols(); };
   return is_node(found.deepest.node) && is_node(found.at_contact.node) &&
          found.contact >= (found.at_contact.found() ? 0 : -1) && found.contact < pair_count_ &&
-         std::all_of(found.own.begin(), found.own.end(), is_node) &&
-         std::all_of(found.through.begin(), found.through.end(), is_node);
+         std::ranges::all_of(found.own, is_node) && std::ranges::all_of(found.through, is_node);
 }
 
 void SelfWatch::persist(const SnapshotVisitor& visit) {
   const bool is_finite = visit.numbers("found", found_).allFinite();
   const auto fits_here = [this](const SelfPenetration& found) { return fits(found); };
-  visit.require(is_finite && std::all_of(found_.begin(), found_.end(), fits_here), "found",
+  visit.require(is_finite && std::ranges::all_of(found_, fits_here), "found",
                 "has numbers that do not denote nodes and contacts of this problem");
   for (std::size_t k = 0; k < found_.size(); ++k) {
     WatchedBody& watched = watched_[k];

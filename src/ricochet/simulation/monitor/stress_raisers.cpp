@@ -57,16 +57,14 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
   }
   for (const Ridge& ridge : boundary_ridges(body, bodies.boundary)) judge(ridge);
   reach_neighbours();
-  std::sort(contact_edges_.begin(), contact_edges_.end(),
-            [](const ContactEdge& a, const ContactEdge& b) { return a.node < b.node; });
+  std::ranges::sort(contact_edges_, {}, &ContactEdge::node);
   contact_edges_.erase(std::unique(contact_edges_.begin(), contact_edges_.end(),
                                    [](const ContactEdge& a, const ContactEdge& b) { return a.node == b.node; }),
                        contact_edges_.end());
   for (std::size_t facet = 0; facet < facets.size(); ++facet) {
     if (facet_touches_[facet] == 0) continue;
     for (const Index node : facets[facet]) {
-      const auto edge = std::lower_bound(contact_edges_.begin(), contact_edges_.end(), node,
-                                         [](const ContactEdge& a, Index b) { return a.node < b; });
+      const auto edge = std::ranges::lower_bound(contact_edges_, node, {}, &ContactEdge::node);
       if (edge != contact_edges_.end() && edge->node == node)
         edge->beside.insert(edge->beside.end(), facets[facet].begin(), facets[facet].end());
     }
@@ -164,7 +162,7 @@ void StressRaisers::find_pressed(const State& state) {
 /// other.
 bool StressRaisers::is_flush(const State& state, Index node, double size) const {
   const SpaceVector at = position(state, node);
-  return std::any_of(contact_edges_.begin(), contact_edges_.end(), [&](const ContactEdge& other) {
+  return std::ranges::any_of(contact_edges_, [&](const ContactEdge& other) {
     return other.node != node && (position(state, other.node) - at).norm() <= 1e-3 * size;
   });
 }
@@ -176,13 +174,13 @@ bool StressRaisers::presses_by_edge(const State& state, Nodes nodes, double size
   const auto presses = [this](Index node) { return pressed_[static_cast<std::size_t>(node)] != 0; };
   const auto is_near = [&](Index edge) {
     const bool is_own = body(edge) == body(nodes.front());
-    return std::any_of(nodes.begin(), nodes.end(), [&](Index node) {
+    return std::ranges::any_of(nodes, [&](Index node) {
       return (is_own || presses(node)) && (position(state, node) - position(state, edge)).norm() <= size;
     });
   };
-  return std::any_of(contact_edges_.begin(), contact_edges_.end(), [&](const ContactEdge& edge) {
+  return std::ranges::any_of(contact_edges_, [&](const ContactEdge& edge) {
     if (!presses(edge.node) || !is_near(edge.node) || is_flush(state, edge.node, size)) return false;
-    return edge.is_open_ended || !std::all_of(edge.beside.begin(), edge.beside.end(), presses);
+    return edge.is_open_ended || !std::ranges::all_of(edge.beside, presses);
   });
 }
 
@@ -192,8 +190,7 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
   const int d = problem_.dimension;
   for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
     const Index node = contact.nodes[entry];
-    if (pressed_[static_cast<std::size_t>(node)] == 0 || std::find(nodes.begin(), nodes.end(), node) == nodes.end())
-      continue;
+    if (pressed_[static_cast<std::size_t>(node)] == 0 || std::ranges::find(nodes, node) == nodes.end()) continue;
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[entry])];
     if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
     const PosedObstacle posed = obstacle->at(state.time, state.displacement);

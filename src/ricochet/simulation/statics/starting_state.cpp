@@ -119,7 +119,7 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
 /// obstacle. Returns false otherwise.
 bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vector& support_acceleration,
                                  const std::vector<char>& resting, State& state) {
-  const bool rests = std::find(resting.begin(), resting.end(), 1) != resting.end();
+  const bool rests = std::ranges::find(resting, 1) != resting.end();
   if (problem.ranks->any(rests) || !problem.has_diagonal_mass()) return false;
   Vector mass = problem.mass.diagonal();
   problem.ranks->accumulate(mass);

@@ -92,7 +92,7 @@ class StaticFriction {
   }
 
   [[nodiscard]] const std::vector<char>& sliding() const { return sliding_; }
-  [[nodiscard]] Index sliding_points() const { return std::count(sliding_.begin(), sliding_.end(), 1); }
+  [[nodiscard]] Index sliding_points() const { return std::ranges::count(sliding_, 1); }
   void leave_out_sliding() { left_out_ = true; }
 
   void require(const Vector& displacement, Stage& stage) const {

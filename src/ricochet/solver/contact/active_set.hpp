@@ -43,9 +43,7 @@ class PrimalDualActiveSet {
     base_ = std::move(base);
     has_base_to_factor_ = true;
   }
-  [[nodiscard]] bool keeps_row(Index problem_row) const {
-    return std::binary_search(base_.begin(), base_.end(), problem_row);
-  }
+  [[nodiscard]] bool keeps_row(Index problem_row) const { return std::ranges::binary_search(base_, problem_row); }
 
  private:
   void renumber(const ContactSystem& system);

@@ -33,8 +33,8 @@ bool is_alike(const ContactUnknown& one, const ContactUnknown& other) {
 
 void AlartCurnierStep::add(ContactUnknown unknown, const PaddedVector& trial, const PaddedVector& test, double diagonal,
                            double present) {
-  std::copy(trial.begin(), trial.end(), unknown.trial.begin());
-  std::copy(test.begin(), test.end(), unknown.test.begin());
+  std::ranges::copy(trial, unknown.trial.begin());
+  std::ranges::copy(test, unknown.test.begin());
   unknown.diagonal = diagonal;
   present_[static_cast<Index>(unknowns_.size())] = present;
   unknowns_.push_back(unknown);

@@ -67,8 +67,8 @@ void ContactProblem::validate() const {
 bool are_first_rows(const std::vector<Index>& row_offset, const std::vector<Index>& rows, bool distinct) {
   const auto out_of_order = [&](Index one, Index next) { return distinct ? one >= next : one > next; };
   if (std::adjacent_find(rows.begin(), rows.end(), out_of_order) != rows.end()) return false;
-  return std::all_of(rows.begin(), rows.end(),
-                     [&](Index row) { return std::binary_search(row_offset.begin(), row_offset.end() - 1, row); });
+  return std::ranges::all_of(
+      rows, [&](Index row) { return std::binary_search(row_offset.begin(), row_offset.end() - 1, row); });
 }
 
 }  // namespace ricochet

@@ -84,7 +84,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   // The root of a power of two is one only for even powers: W's largest diagonal is brought between one and two first.
   operator_scale_ = 1.0 / power_of_two(largest);
   // Even with respect to the first point: a scaling of other rows, the largest one's included, changes nothing.
-  const auto present = std::find_if(largest_of.begin(), largest_of.end(), [](double d) { return d > 0.0; });
+  const auto present = std::ranges::find_if(largest_of, [](double d) { return d > 0.0; });
   if (present != largest_of.end() && ((std::ilogb(largest) - std::ilogb(*present)) & 1) != 0) operator_scale_ *= 0.5;
   for (std::size_t i = 0; i < scale_.size(); ++i) {
     const double diagonal = operator_scale_ * largest_of[i];
@@ -195,7 +195,7 @@ void ContactSystem::gather(const ContactProblem& problem) {
 }
 
 Index ContactSystem::system_row(Index problem_row) const {
-  const auto found = std::lower_bound(row_of_.begin(), row_of_.end(), problem_row);
+  const auto found = std::ranges::lower_bound(row_of_, problem_row);
   return found != row_of_.end() && *found == problem_row ? found - row_of_.begin() : -1;
 }
 

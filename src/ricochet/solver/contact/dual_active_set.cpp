@@ -106,9 +106,8 @@ void DualActiveSet::solve_set(const Vector& motion) {
 void DualActiveSet::correct(ContactIterate& current) {
   for (int k = 0; k < corrections; ++k) {
     system_->evaluate(current);
-    const bool is_zero = std::all_of(set_.begin(), set_.end(), [&](Index point) {
-      return std::abs(current.motion[row_of(point)]) <= 0.25 * floor_of(point, current);
-    });
+    const bool is_zero = std::ranges::all_of(
+        set_, [&](Index point) { return std::abs(current.motion[row_of(point)]) <= 0.25 * floor_of(point, current); });
     if (is_zero) return;
     solve_set(current.motion);
     for (std::size_t i = rows_.size(); i-- > 0;) {
@@ -131,7 +130,7 @@ Index DualActiveSet::most_violated(const ContactIterate& current) const {
   Index result = -1;
   double deepest = 0.0;
   for (Index k = 0; k < point_count(); ++k) {
-    if (excused_[static_cast<std::size_t>(k)] != 0 || std::find(set_.begin(), set_.end(), k) != set_.end()) continue;
+    if (excused_[static_cast<std::size_t>(k)] != 0 || std::ranges::find(set_, k) != set_.end()) continue;
     const double motion = current.motion[row_of(k)];
     if (motion >= -floor_of(k, current) || motion >= deepest) continue;
     deepest = motion;
@@ -160,7 +159,7 @@ void DualActiveSet::note_contradiction(Index entering) {
   for (std::size_t i = 0; i < set_.size(); ++i) {
     if (direction_[static_cast<Index>(i)] > 1e-9 * largest) contradiction_.push_back(number(set_[i]));
   }
-  std::sort(contradiction_.begin(), contradiction_.end());
+  std::ranges::sort(contradiction_);
 }
 
 /// Returns false if the point contradicts others, or no further progress is possible.

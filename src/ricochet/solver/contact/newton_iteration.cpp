@@ -262,7 +262,7 @@ std::string NewtonContactSolver::iterate(const ContactSystem& system, const Cont
       std::swap(current, trial_);
       return "";
     }
-    if (search_line(system, current, *std::max_element(merits_.begin(), merits_.end()))) {
+    if (search_line(system, current, *std::ranges::max_element(merits_))) {
       merits_[static_cast<std::size_t>(k) % memory] = merit_;
     } else if (++jumps <= jump_limit && std::isfinite(residual)) {
       std::swap(current, trial_);

@@ -68,7 +68,7 @@ void ReusedFactor::persist(const SnapshotVisitor& visit, const std::vector<Index
                   "do not belong to points of this problem");
     unknowns_.assign(rows.size(), {});
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto point = std::lower_bound(row_offset.begin(), row_offset.end(), rows[i]);
+      const auto point = std::ranges::lower_bound(row_offset, rows[i]);
       visit.require(sizes[i] <= point[1] - point[0], "unknowns", "have more rows than their points");
       unknowns_[i].problem_row = rows[i];
       unknowns_[i].size = sizes[i];
@@ -79,9 +79,7 @@ void ReusedFactor::persist(const SnapshotVisitor& visit, const std::vector<Index
 
 /// Unknowns are in the order of their points.
 bool ReusedFactor::keeps_row(Index problem_row) const {
-  const auto found =
-      std::lower_bound(unknowns_.begin(), unknowns_.end(), problem_row,
-                       [](const ContactUnknown& unknown, Index row) { return unknown.problem_row < row; });
+  const auto found = std::ranges::lower_bound(unknowns_, problem_row, {}, &ContactUnknown::problem_row);
   return found != unknowns_.end() && found->problem_row == problem_row;
 }
 

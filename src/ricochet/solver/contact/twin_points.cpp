@@ -17,7 +17,7 @@ constexpr int exchange_limit = 20;
 /// Returns whether the points have the same law: only then any of them may carry the reaction.
 bool have_one_law(const ContactProblem& problem, const std::vector<Index>& points) {
   const Index one = points.front();
-  return std::all_of(points.begin(), points.end(), [&](Index other) {
+  return std::ranges::all_of(points, [&](Index other) {
     return problem.is_eligible(other) && problem.friction_coefficient[other] == problem.friction_coefficient[one] &&
            problem.bound(other) == problem.bound(one);
   });
@@ -28,7 +28,7 @@ double normal_motion(const ContactProblem& problem, const Vector& motion, Index 
 }
 
 Index deepest_of(const ContactProblem& problem, const Vector& motion, const std::vector<Index>& points) {
-  return *std::min_element(points.begin(), points.end(), [&](Index one, Index other) {
+  return *std::ranges::min_element(points, [&](Index one, Index other) {
     return normal_motion(problem, motion, one) < normal_motion(problem, motion, other);
   });
 }
@@ -61,16 +61,15 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
   };
   std::vector<Group> groups;
   for (Index point = 0; point + 1 < static_cast<Index>(first.size()); ++point) {
-    const auto own = std::find_if(groups.begin(), groups.end(),
-                                  [&](const Group& group) { return are_alike(group.points.front(), point); });
+    const auto own =
+        std::ranges::find_if(groups, [&](const Group& group) { return are_alike(group.points.front(), point); });
     if (own != groups.end()) {
       own->points.push_back(point);
     } else {
       groups.push_back({{point}, -1});
     }
   }
-  std::copy_if(groups.begin(), groups.end(), std::back_inserter(groups_),
-               [](const Group& group) { return group.points.size() > 1; });
+  std::ranges::copy_if(groups, std::back_inserter(groups_), [](const Group& group) { return group.points.size() > 1; });
   return !groups_.empty();
 }
 
@@ -96,8 +95,8 @@ void TwinPoints::choose(const ContactProblem& problem, const Vector& motion, std
   exchanges_left_ = exchange_limit;
   for (Group& group : groups_) {
     group.chosen = -1;
-    const bool is_in = std::any_of(group.points.begin(), group.points.end(),
-                                   [&](Index k) { return selected[static_cast<std::size_t>(k)]; });
+    const bool is_in =
+        std::ranges::any_of(group.points, [&](Index k) { return selected[static_cast<std::size_t>(k)]; });
     if (is_in && have_one_law(problem, group.points))
       replace(problem, group, deepest_of(problem, motion, group.points), selected, reaction);
   }

@@ -112,8 +112,7 @@ void CorotatedFrame::rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& r
 void CorotatedFrame::persist(const SnapshotVisitor& visit) {
   visit.numbers("rotation", rotation_);
   if (!visit.loads()) return;
-  is_identity_ =
-      std::all_of(rotation_.begin(), rotation_.end(), [](const Tensor& r) { return r == Tensor::Identity(); });
+  is_identity_ = std::ranges::all_of(rotation_, [](const Tensor& r) { return r == Tensor::Identity(); });
   ++number_;
 }
 

@@ -96,7 +96,7 @@ std::vector<Index> ContactCandidates::nearest(const ContactConditions& condition
     return std::pair(conditions.gap.offset[a], a) < std::pair(conditions.gap.offset[b], b);
   });
   result.erase(last, result.end());
-  std::sort(result.begin(), result.end());
+  std::ranges::sort(result);
   return result;
 }
 
@@ -120,7 +120,7 @@ std::vector<Index> ContactCandidates::penetrating(const ContactConditions& condi
     deepest = std::max(deepest, -gap(i));
   }
   std::erase_if(result, [&](Index point) { return -gap(point) < deep * deepest; });
-  std::stable_sort(result.begin(), result.end(), [&](Index a, Index b) { return gap(a) < gap(b); });
+  std::ranges::stable_sort(result, [&](Index a, Index b) { return gap(a) < gap(b); });
   result.resize(std::min(result.size(), std::max(few_points, points_.size())));
   return result;
 }

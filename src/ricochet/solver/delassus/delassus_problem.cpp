@@ -89,7 +89,7 @@ void DelassusProblem::sort_by_tree_position(std::vector<Index>& points) const {
       if (unknown >= 0) position[i] = std::max(position[i], factor_.factor_index(unknown));
     });
   }
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
     return std::pair(position[a], points[a]) < std::pair(position[b], points[b]);
   });
   std::vector<Index> sorted;
@@ -192,7 +192,7 @@ void DelassusProblem::append_supported() {
   const std::vector<Index>& dofs = problem_.supports.dofs();
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
-      const auto support = std::lower_bound(dofs.begin(), dofs.end(), dof);
+      const auto support = std::ranges::lower_bound(dofs, dof);
       if (support == dofs.end() || *support != dof) return;
       entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(support - dofs.begin()),
                            value);
@@ -234,8 +234,7 @@ void DelassusProblem::solve(const LinearStage& stage, Vector& y, StageSolution& 
   iterations_ = 0;
   solution.clear_mean();
   set_rows(stage);
-  if (std::none_of(stage.conditions.eligible.begin(), stage.conditions.eligible.end(), [](char e) { return e != 0; }))
-    return;
+  if (std::ranges::none_of(stage.conditions.eligible, [](char e) { return e != 0; })) return;
   add_initial_candidates(stage);
   if (!shared_.all_points && !choose_candidates(stage)) return;
   add_initial_candidates(stage);  // candidates that were dropped

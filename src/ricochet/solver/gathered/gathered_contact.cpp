@@ -50,7 +50,7 @@ GatheredContact::GatheredContact(const SemidiscreteProblem& problem, std::size_t
   for (const std::vector<std::int64_t>& count : counts) first_.push_back(first_.back() + count.front());
   std::vector<int> by_points(size);
   std::iota(by_points.begin(), by_points.end(), 0);
-  std::stable_sort(by_points.begin(), by_points.end(), [&](int a, int b) {
+  std::ranges::stable_sort(by_points, [&](int a, int b) {
     return counts[static_cast<std::size_t>(a)].front() > counts[static_cast<std::size_t>(b)].front();
   });
   nodes_ = GatheredNodes(ranks, by_points.at(root_index), named_by_all(problem.contact.unique_nodes()));
@@ -119,7 +119,7 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
   if (!problem_.ranks->any(!changed.empty())) return;
   const auto merged = rows_ ? std::make_shared<ContactRows>(*rows_) : std::make_shared<ContactRows>();
   ContactRows sent = rows;
-  std::fill(sent.revision.begin(), sent.revision.end(), changes_);
+  std::ranges::fill(sent.revision, changes_);
   gather_values(changed, sent, true, *merged);
   rows_ = merged;
 }

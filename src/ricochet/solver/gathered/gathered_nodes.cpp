@@ -7,7 +7,7 @@ namespace ricochet {
 GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vector<Index>& nodes,
                              const GatheredNodes* first)
     : ranks_(&ranks), root_(root_rank), nodes_(nodes) {
-  std::sort(nodes_.begin(), nodes_.end());
+  std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   const auto size = static_cast<std::size_t>(ranks.size());
   Ranks::ForEach<std::int64_t> sent(size), sent_owned(size);
@@ -21,18 +21,18 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vecto
   if (!is_root()) return;
   if (first != nullptr) numbers_ = first->numbers_;
   std::vector<std::int64_t> before = numbers_, others;
-  std::sort(before.begin(), before.end());
+  std::ranges::sort(before);
   for (const auto& list : received) {
     for (const std::int64_t number : list) {
-      if (!std::binary_search(before.begin(), before.end(), number)) others.push_back(number);
+      if (!std::ranges::binary_search(before, number)) others.push_back(number);
     }
   }
-  std::sort(others.begin(), others.end());
+  std::ranges::sort(others);
   others.erase(std::unique(others.begin(), others.end()), others.end());
   numbers_.insert(numbers_.end(), others.begin(), others.end());
   for (std::size_t index = 0; index < numbers_.size(); ++index)
     index_.emplace_back(numbers_[index], static_cast<Index>(index));
-  std::sort(index_.begin(), index_.end());
+  std::ranges::sort(index_);
   indices_.resize(size);
   owned_indices_.resize(size);
   for (std::size_t rank = 0; rank < size; ++rank) {
@@ -44,7 +44,7 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vecto
 }
 
 Index GatheredNodes::index_of(std::int64_t number) const {
-  const auto found = std::lower_bound(index_.begin(), index_.end(), std::pair(number, Index{0}));
+  const auto found = std::ranges::lower_bound(index_, std::pair(number, Index{0}));
   return found != index_.end() && found->first == number ? found->second : -1;
 }
 

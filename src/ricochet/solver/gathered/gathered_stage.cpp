@@ -60,7 +60,7 @@ SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTe
     const std::vector<Index> more = nodes_within(MatrixGraph(term.matrix->pattern()), nodes, 1).nodes;
     nodes.insert(nodes.end(), more.begin(), more.end());
   }
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   const std::vector<int> supports =
       number_dofs(problem, {problem.supports.dofs().begin(), problem.supports.dofs().end()});

@@ -124,7 +124,7 @@ class PointReader : private PointMembers {
   void read(ContactAxes axes, Values& values) {
     if constexpr (requires { clear(values, Index{}); }) {
       const auto has = read_flags();
-      const Index size = std::find(has.begin(), has.end(), 1) != has.end() ? count_ * per_point(axes) : 0;
+      const Index size = std::ranges::find(has, 1) != has.end() ? count_ * per_point(axes) : 0;
       if (!keeps_ || values.size() == 0) clear(values, size);
       visit_parts(axes, has, [&](NumberReader& numbers, Index item) { enter(numbers, values, item); });
     } else {

@@ -25,7 +25,7 @@ MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   std::vector<std::int64_t>& message = sent[static_cast<std::size_t>(nodes_.root())];
   for (const Index node : nodes) {
     for (const int other : body_.neighbourhood.graph().neighbours(node)) {
-      if (!std::binary_search(nodes.begin(), nodes.end(), Index{other})) continue;
+      if (!std::ranges::binary_search(nodes, Index{other})) continue;
       message.push_back(ranks.number_of(node));
       message.push_back(ranks.number_of(other));
     }

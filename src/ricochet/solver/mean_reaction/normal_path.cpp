@@ -27,7 +27,7 @@ bool NormalPath::evaluate(const Vector& q) {
     y_ = q;
     set_.add_motion(r_, y_);
     const auto& points = set_.points();
-    if (std::all_of(points.begin(), points.end(), [&](Index i) { return std::abs(y_[i]) <= closed; })) return true;
+    if (std::ranges::all_of(points, [&](Index i) { return std::abs(y_[i]) <= closed; })) return true;
   }
   return false;
 }

@@ -116,7 +116,7 @@ bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<cha
       if (deepest < 0 || gap_[i] < gap_[deepest]) deepest = i;
     }
     if (deepest < 0) {
-      std::fill(pressing.begin(), pressing.end(), char{0});
+      std::ranges::fill(pressing, char{0});
       for (const Index point : set_) pressing[static_cast<std::size_t>(point)] = 1;
       return true;
     }

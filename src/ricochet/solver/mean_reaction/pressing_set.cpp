@@ -39,8 +39,7 @@ bool PressingSet::set_points(const std::vector<char>& marks) {
   if (2 * (added_.size() + removed_.size()) < points_.size() + 2) {
     const auto remove_one = [&](Index point) { return remove(point); };
     const auto add_one = [&](Index point) { return add(point); };
-    if (std::all_of(removed_.begin(), removed_.end(), remove_one) && std::all_of(added_.begin(), added_.end(), add_one))
-      return true;
+    if (std::ranges::all_of(removed_, remove_one) && std::ranges::all_of(added_, add_one)) return true;
   }
   points_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {

@@ -68,7 +68,7 @@ void ReactionPath::set_friction(const Step& step) {
 
 bool ReactionPath::follow_normal(const Step& step) {
   selected_ = &normal_;
-  if (std::find(share_.begin(), share_.end(), on_cone) != share_.end()) {
+  if (std::ranges::find(share_, on_cone) != share_.end()) {
     path_u_ = normal_u_;
     for (std::size_t i = 0; i < share_.size(); ++i) {
       if (share_[i] != on_cone) continue;
@@ -163,8 +163,8 @@ bool ReactionPath::follow(const Step& step) {
   for (int iteration = 0;; ++iteration) {
     set_friction(step);
     if (!follow_normal(step)) {
-      if (std::find(share_.begin(), share_.end(), on_cone) == share_.end()) return false;
-      std::replace(share_.begin(), share_.end(), on_cone, 1.0);
+      if (std::ranges::find(share_, on_cone) == share_.end()) return false;
+      std::ranges::replace(share_, on_cone, 1.0);
       continue;
     }
     find_works(step);

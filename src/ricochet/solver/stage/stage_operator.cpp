@@ -40,8 +40,7 @@ std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs)
   const auto solved_for = [&](Index dof) {
     if (problem.supports.contains(dof) || problem.is_tied_dof(dof)) return false;
     if (dofs == StageDofs::massive) return problem.is_massless[static_cast<std::size_t>(dof)] == 0;
-    if (dofs == StageDofs::contact)
-      return std::binary_search(problem.contact_dofs.begin(), problem.contact_dofs.end(), dof);
+    if (dofs == StageDofs::contact) return std::ranges::binary_search(problem.contact_dofs, dof);
     return true;
   };
   std::vector<int> result;

@@ -49,7 +49,7 @@ void bisect(const SemidiscreteProblem& problem, const std::vector<Index>& points
     std::vector<std::size_t> members;
     for (auto bundle = begin; bundle != end; ++bundle)
       members.insert(members.end(), bundle->members.begin(), bundle->members.end());
-    std::sort(members.begin(), members.end());
+    std::ranges::sort(members);
     std::vector<Index>& cluster = clusters.emplace_back();
     for (const std::size_t member : members) cluster.push_back(points[member]);
     return;

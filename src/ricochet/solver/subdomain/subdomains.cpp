@@ -124,9 +124,8 @@ std::vector<Subdomain::Extent> Subdomains::subdomains_of(const std::vector<Index
     }
     for (const Index point : points) {
       bool inside = true;
-      problem_.contact.visit_nodes(point, [&](Index node, double) {
-        inside = inside && std::binary_search(extent.nodes.begin(), extent.nodes.end(), node);
-      });
+      problem_.contact.visit_nodes(
+          point, [&](Index node, double) { inside = inside && std::ranges::binary_search(extent.nodes, node); });
       if (inside) extent.points.push_back(point);
     }
   }

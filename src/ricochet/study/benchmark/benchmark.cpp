@@ -21,7 +21,7 @@ namespace {
 /// Returns a name for a directory.
 std::string folder_name(const std::string& benchmark, const std::string& method) {
   std::string name = benchmark + (method.empty() ? "" : "-" + method);
-  std::replace(name.begin(), name.end(), '/', '-');
+  std::ranges::replace(name, '/', '-');
   return name;
 }
 
@@ -31,7 +31,7 @@ struct MethodRow {
   std::vector<MethodChoice> chosen;
 
   [[nodiscard]] bool is_always_refused() const {
-    return std::all_of(chosen.begin(), chosen.end(), [](const MethodChoice& c) { return c.is_refused(); });
+    return std::ranges::all_of(chosen, [](const MethodChoice& c) { return c.is_refused(); });
   }
   /// Returns the mass that is chosen most often, or "".
   [[nodiscard]] std::string usual_mass() const;
@@ -85,7 +85,7 @@ void refuse_existing_results(const std::string& directory, const BenchmarkOption
 void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options) {
   if (!holds_benchmarks(plan.directory)) return;
   const auto is_kept = [&](const BenchmarkRun& old) {
-    if (!options.resume || std::find(plan.runs.begin(), plan.runs.end(), old) == plan.runs.end()) return false;
+    if (!options.resume || std::ranges::find(plan.runs, old) == plan.runs.end()) return false;
     try {
       const RunState state = read_run_state(plan.path(old));
       warn_of_other_version(state);

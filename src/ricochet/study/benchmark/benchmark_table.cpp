@@ -83,7 +83,7 @@ std::string title_of(const BenchmarkPlan& plan, const BenchmarkRun& run) {
 
 std::size_t BenchmarkRunResult::holds() const {
   return static_cast<std::size_t>(
-      std::count_if(expectations.begin(), expectations.end(), [](const ExpectationResult& e) { return e.holds; }));
+      std::ranges::count_if(expectations, [](const ExpectationResult& e) { return e.holds; }));
 }
 
 std::string BenchmarkRunResult::status_text() const {
@@ -168,7 +168,7 @@ void write_benchmark_tables(const BenchmarkPlan& plan, const BenchmarkResults& r
   std::vector<std::string> reported;
   page += "\nThe benchmarks:\n\n";
   for (const BenchmarkRun& run : plan.runs) {
-    if (std::count(reported.begin(), reported.end(), run.benchmark.name) > 0) continue;
+    if (std::ranges::count(reported, run.benchmark.name) > 0) continue;
     reported.push_back(run.benchmark.name);
     page += fmt::format("- `{}`: {}\n", run.benchmark.name, markdown_text(run.benchmark.description));
   }

@@ -39,7 +39,7 @@ void add_unknown(const TomlNode& node, const std::vector<std::string>& known, Pr
 
 /// Returns true if a text can be a name, which becomes part of the names of directories.
 bool is_name(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   });
 }
@@ -47,8 +47,7 @@ bool is_name(const std::string& text) {
 Benchmark read_benchmark(const TomlNode& entry, const fs::path& folder, Problems& problems) {
   Benchmark benchmark;
   for (const TomlNode& value : entry.children) {
-    const auto key = std::find_if(manifest_keys.begin(), manifest_keys.end(),
-                                  [&](const auto& known) { return known.first == value.key; });
+    const auto key = std::ranges::find_if(manifest_keys, [&](const auto& known) { return known.first == value.key; });
     if (key == manifest_keys.end()) {
       add_unknown(value, known_keys(), problems);
     } else if (value.kind != TomlNode::Kind::text) {
@@ -86,8 +85,8 @@ std::vector<Benchmark> read_benchmarks(const std::string& path) {
     }
     for (const TomlNode& entry : section.children) {
       Benchmark benchmark = read_benchmark(entry, fs::path(path).parent_path(), problems);
-      const bool is_there = std::any_of(benchmarks.begin(), benchmarks.end(),
-                                        [&](const Benchmark& other) { return other.name == benchmark.name; });
+      const bool is_there =
+          std::ranges::any_of(benchmarks, [&](const Benchmark& other) { return other.name == benchmark.name; });
       if (is_there && !benchmark.name.empty())
         problems.add(entry.location, fmt::format("two benchmarks have the name \"{}\"", benchmark.name));
       benchmarks.push_back(std::move(benchmark));
@@ -103,7 +102,7 @@ std::vector<Benchmark> choose_benchmarks(const std::vector<Benchmark>& all, cons
   std::vector<std::string> known;
   for (const Benchmark& benchmark : all) known.push_back(benchmark.name);
   for (const std::string& name : names) {
-    if (std::count(known.begin(), known.end(), name) > 0) continue;
+    if (std::ranges::count(known, name) > 0) continue;
     const std::string meant = nearest_name(name, known);
     throw Error(ErrorKind::usage, fmt::format("benchmark: there is no \"{}\"{}; available: {}", name,
                                               meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant),
@@ -112,7 +111,7 @@ std::vector<Benchmark> choose_benchmarks(const std::vector<Benchmark>& all, cons
   if (names.empty()) return all;
   std::vector<Benchmark> chosen;
   for (const Benchmark& benchmark : all) {
-    if (std::count(names.begin(), names.end(), benchmark.name) > 0) chosen.push_back(benchmark);
+    if (std::ranges::count(names, benchmark.name) > 0) chosen.push_back(benchmark);
   }
   return chosen;
 }

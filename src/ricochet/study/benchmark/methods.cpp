@@ -23,7 +23,7 @@ constexpr double part_of_critical_step = 0.9;
 constexpr long most_steps = 50'000;
 
 void require_known(const std::string& noun, const std::string& name, const std::vector<std::string>& known) {
-  if (std::count(known.begin(), known.end(), name) > 0) return;
+  if (std::ranges::count(known, name) > 0) return;
   const std::string meant = nearest_name(name, known);
   throw Error(ErrorKind::usage, fmt::format("--scheme: there is no {} \"{}\"{}; available: {}", noun, name,
                                             meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant),
@@ -71,7 +71,7 @@ std::vector<RequestedMethod> parse_methods(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     RequestedMethod method = parse_method(text.substr(begin, comma - begin));
-    if (std::count(methods.begin(), methods.end(), method) == 0) methods.push_back(std::move(method));
+    if (std::ranges::count(methods, method) == 0) methods.push_back(std::move(method));
     begin = comma + 1;
   }
   return methods;

@@ -54,7 +54,7 @@ class MatrixMaker {
 
 MatrixMaker::MatrixMaker(const BenchmarkPlan& plan, const BenchmarkResults& results) : plan_(plan), results_(results) {
   const auto add = [](std::vector<std::string>& list, const std::string& entry) {
-    if (std::count(list.begin(), list.end(), entry) == 0) list.push_back(entry);
+    if (std::ranges::count(list, entry) == 0) list.push_back(entry);
   };
   for (const BenchmarkRun& run : plan.runs) {
     add(methods_, run.method);
@@ -74,7 +74,7 @@ std::string MatrixMaker::masses_of(const std::string& method) const {
   std::vector<std::string> masses;
   for (const std::size_t i : runs_of(method)) {
     const std::string& mass = plan_.runs[i].mass;
-    if (!mass.empty() && std::count(masses.begin(), masses.end(), mass) == 0) masses.push_back(mass);
+    if (!mass.empty() && std::ranges::count(masses, mass) == 0) masses.push_back(mass);
   }
   return masses.empty() ? "none" : join_names(masses, " or ", false);
 }
@@ -83,7 +83,7 @@ std::string MatrixMaker::cell_of(std::size_t run) {
   const BenchmarkRunResult& result = results_.run_results[run];
   if (is_done(result)) return done_text(result);
   if (result.state.status_text() != "refused") return result.status_text();
-  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), result.message);
+  auto found = std::ranges::find(matrix_.reasons, result.message);
   if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, result.message);
   return fmt::format("refused ({})", found - matrix_.reasons.begin() + 1);
 }

@@ -314,7 +314,7 @@ TEST(ActiveSet, IneligiblePointsAreNotThere) {
   expect_solution(problem, found);
   const Vector reduced = solve(Problem(problem.w(kept, kept), problem.q(kept)));
   EXPECT_LE((found(kept) - reduced).lpNorm<Eigen::Infinity>(), 1e-13 * reduced.lpNorm<Eigen::Infinity>());
-  std::fill(problem.eligible.begin(), problem.eligible.end(), char{0});
+  std::ranges::fill(problem.eligible, char{0});
   EXPECT_EQ(solve(problem, solver), Vector::Zero(size));
 }
 

@@ -21,7 +21,7 @@ ContactPoint make_point(Index size, double coefficient, double bound = 0.0) {
 
 PointVector vector(std::initializer_list<double> values) {
   PointVector result(static_cast<Index>(values.size()));
-  std::copy(values.begin(), values.end(), result.data());
+  std::ranges::copy(values, result.data());
   return result;
 }
 

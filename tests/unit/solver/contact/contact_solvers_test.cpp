@@ -310,7 +310,7 @@ TEST_P(ContactSolvers, TakeLargeProductsOrSayThatTheyDoNot) {
 
 TEST_P(ContactSolvers, TakeFrictionBoundsOrSayThatTheyDoNot) {
   const std::vector<std::string> of_cones{"newton-fischer-burmeister", "accelerated-gradient", "extragradient", "admm"};
-  const bool refuses = std::find(of_cones.begin(), of_cones.end(), GetParam()) != of_cones.end();
+  const bool refuses = std::ranges::find(of_cones, GetParam()) != of_cones.end();
   for (const double friction : {0.0, 0.5}) {
     for (unsigned seed = 0; seed < 5; ++seed) {
       FrictionProblem problem = random_problem(20, dimension(), friction, seed);

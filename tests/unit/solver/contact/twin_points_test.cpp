@@ -77,7 +77,7 @@ TEST(TwinPoints, AreFoundByW) {
   twins.choose(problem, motion, wanted, reaction);
   EXPECT_EQ(wanted[0], 0);
   EXPECT_EQ(wanted[1], 1);
-  EXPECT_EQ(std::count(wanted.begin(), wanted.end(), 1), 4);
+  EXPECT_EQ(std::ranges::count(wanted, 1), 4);
   EXPECT_EQ(reaction.segment(0, 6), (Vector(6) << 0, 0, 0, 2, 2, 2).finished());
   // The other one is deeper now: it replaces the first and receives its reaction.
   motion[0] = -2.0;
