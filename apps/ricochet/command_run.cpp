@@ -44,10 +44,6 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   if (!s.contact_export.empty()) fmt::print("  {}\n", s.contact_export);
 }
 
-}  // namespace
-
-namespace {
-
 /// Replaces `--resume DIR` by the case and the settings with which the run in DIR began.
 RunArguments with_origin(RunArguments arguments) {
   if (!arguments.resume) {
@@ -74,10 +70,6 @@ RunArguments with_origin(RunArguments arguments) {
   arguments.overrides = origin.settings;
   return arguments;
 }
-
-}  // namespace
-
-namespace {
 
 /// Requires that each process reads the same case. Throws Error(file_access) on all processes if some cannot read it or
 /// read another text.

@@ -7,12 +7,8 @@
 
 namespace ricochet::program {
 
-namespace {
-
 /// Rounding of sums over all nodes of a mesh, relative to their terms.
 constexpr double rounding = 1e-12;
-
-}  // namespace
 
 double without_rounding(double value, double size) {
   return std::abs(value) > rounding * size ? value : 0.0;

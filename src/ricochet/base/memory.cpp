@@ -15,11 +15,7 @@
 
 namespace ricochet {
 
-namespace {
-
 constexpr std::size_t huge_page = std::size_t{2} << 20;
-
-}  // namespace
 
 double physical_memory() {
   double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -38,10 +38,6 @@ void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Law of one material in a body of this dimension.
 template <int d>
 class StressLaw {

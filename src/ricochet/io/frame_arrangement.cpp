@@ -11,12 +11,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Size in bytes from which a dataset is compressed.
 constexpr Index least_compressed = 16384;
-
-}  // namespace
 
 std::unique_ptr<const FrameArrangement> make_frame_arrangement(const std::vector<FixedDataset>& fixed,
                                                                const std::vector<DatasetLayout>& layout,

@@ -14,12 +14,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Bytes that are written at once.
 constexpr std::size_t piece = 8192;
-
-}  // namespace
 
 HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns,
                              const std::optional<SnapshotVisitor>& saved)

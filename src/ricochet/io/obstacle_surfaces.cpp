@@ -6,12 +6,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Extent of the displayed part to each side, in sizes of the body.
 constexpr double reach = 1.0;
-
-}  // namespace
 
 ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
   for (const Obstacle* obstacle : problem.obstacles) {

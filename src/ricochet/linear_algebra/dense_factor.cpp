@@ -26,10 +26,8 @@ void dgemv_(const char* transposed, const int* rows, const int* columns, const d
 
 namespace ricochet {
 
-namespace {
 constexpr double one = 1.0;
 constexpr double zero = 0.0;
-}  // namespace
 
 void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
                             const double* right, Index right_stride, double* result, Index result_stride) {

@@ -17,8 +17,6 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Factors with fewer numbers are not divided: handing work to another thread would take longer than the solve.
 constexpr double least_divided_size = 1 << 18;
 /// Subtrees hold at most this fraction of the factor.
@@ -26,8 +24,6 @@ constexpr double parts_per_factor = 16.0;
 
 constexpr std::size_t huge_page = std::size_t{1} << 21;
 constexpr std::size_t cache_line = 64;
-
-}  // namespace
 
 HugePageBuffer::HugePageBuffer(std::size_t size) : size_(size) {
   const std::size_t alignment = size * sizeof(double) >= huge_page ? huge_page : cache_line;

@@ -11,12 +11,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Rounding of gaps, relative to the size of the body, above which they are useless.
 constexpr double least_precision = 1e-6;
-
-}  // namespace
 
 double node_spacing(const DisplacementSpace& space, const std::vector<Index>& facets) {
   double largest = 0.0;

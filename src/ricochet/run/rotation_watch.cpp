@@ -14,12 +14,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Rotations below the least are not recorded; above it, each growth by a hundredth is.
 constexpr double least_noted = 1e-6, noted_growth = 1.01;
-
-}  // namespace
 
 std::string spurious_strain(double rotation) {
   return fmt::format("a spurious strain of {:.2g} % (1 - cos of the angle)", 100.0 * (1.0 - std::cos(rotation)));

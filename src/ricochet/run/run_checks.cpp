@@ -12,14 +12,10 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Rounding of a sum of works, relative to the largest work.
 constexpr double rounding_of_works = 1e-12;
 /// Rounding of momenta, relative to √(2 m T).
 constexpr double rounding_of_momenta = 1e-12;
-
-}  // namespace
 
 RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
                      const std::vector<std::string>& columns)

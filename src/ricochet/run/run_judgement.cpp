@@ -13,15 +13,11 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Rotation, in rad, above which the run reports at its end how large the error has become; the error grows with the
 /// square.
 constexpr double large_rotation = 2.0 * rotation_limit;
 /// Equivalent strain above which small strain does not hold.
 constexpr double strain_limit = 0.1;
-
-}  // namespace
 
 bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state) {
   // Energies are computed from displacements without their rigid part (LinearElasticity), and their rounding is that of

@@ -8,12 +8,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Fraction of the critical step above which changes of contact leave high frequencies of large amplitude.
 constexpr double safe_fraction = 0.9;
-
-}  // namespace
 
 void require_contact_inertia(const SemidiscreteProblem& problem, const std::string& scheme, const std::string& why) {
   if (!problem.has_singular_mass()) return;

@@ -7,12 +7,8 @@
 /// @file Adaptive steps of a simulation.
 namespace ricochet {
 
-namespace {
-
 /// Level of the shortest trial step.
 constexpr int shortest_trial_level = 4;
-
-}  // namespace
 
 /// Returns kinetic and elastic energy, summed over ranks.
 double Simulation::energy_of_motion() const {

@@ -12,8 +12,6 @@
 
 namespace ricochet {
 
-namespace {
-
 constexpr double order = 2.0;  ///< of the error of a step
 constexpr int first_level = 4;
 constexpr double most_created = 100.0;  ///< times the energy that the motion has without it
@@ -23,8 +21,6 @@ constexpr double part_of_prospect = 0.25;
 /// Growth of the largest energy in an attempt above which more is about to come; less is rounding or gradual growth.
 constexpr double growth_ahead = 1e-3;
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
-
-}  // namespace
 
 StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOptions& options)
     : problem_(problem), options_(options) {

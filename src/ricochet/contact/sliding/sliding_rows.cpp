@@ -10,14 +10,10 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Largest correction, relative to the norm of a row.
 constexpr double most_correction = 0.25;
 /// Multiple of the rounding error below which a motion has no meaningful direction.
 constexpr double least_motion = 1e3;
-
-}  // namespace
 
 SlidingRows::SlidingRows(const Points& nodes) : nodes_(nodes), extent_(extent(nodes)) {}
 

@@ -5,11 +5,7 @@
 
 namespace ricochet {
 
-namespace {
-
 constexpr int things_of_leaf = 4;
-
-}  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
   std::iota(order_.begin(), order_.end(), 0);

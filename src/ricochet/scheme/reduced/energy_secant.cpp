@@ -6,16 +6,12 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Upper bound of |σ|, which is about half of the change of a strain; larger values mean that steps are far too long.
 constexpr double largest_sigma = 1.0;
 /// Admissible slopes dσ_required/dσ of a secant; those from `weak` on are weak.
 constexpr double steepest = 4.0, weak = 0.8, min_complement = 0.002, min_complement_settled = 1e-6;
 /// Iterations in which displacements settle.
 constexpr int settling_iterations = 3;
-
-}  // namespace
 
 void EnergySecant::start() {
   sigma_ = 0.0;

@@ -12,12 +12,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Relative error up to which C_c = ηK_c holds.
 constexpr double same_damping = 1e-12;
-
-}  // namespace
 
 void MasslessContactStep::analyse(const SemidiscreteProblem& problem) {
   const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };

@@ -5,13 +5,11 @@
 
 namespace ricochet {
 
-namespace {
 /// Approach velocity, relative to the change by the impulse, below which it is rounding.
 constexpr double rounding_of_velocity = 1e-9;
 /// Fractions of other speeds below which the approach velocity does not determine how it is reversed. Spin, vibrations
 /// and loads act on the normal velocity itself, sliding only through friction.
 constexpr double slowest_beside_sliding = 0.01, slowest_beside_others = 0.1;
-}  // namespace
 
 namespace {
 

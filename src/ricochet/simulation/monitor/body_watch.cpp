@@ -8,14 +8,10 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Relative motion between two checks, in edge lengths.
 constexpr double motion_between_checks = 0.25;
 /// Factor on this motion for bodies whose overlap has been reported: then only its depth is of interest.
 constexpr double resolution_of_found = 4.0;
-
-}  // namespace
 
 BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cells,
                      const std::vector<CellFacet>& boundary, const ConnectedBodies& bodies,

@@ -12,13 +12,9 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Fraction of the allowance of the contact itself, which is half of the largest facet: smooth surfaces deviate by
 /// h²/8R before they touch.
 constexpr double allowed = 0.2;
-
-}  // namespace
 
 LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& problem,
                                    const std::vector<ContactPair>& pairs)

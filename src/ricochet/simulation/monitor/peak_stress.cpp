@@ -8,12 +8,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Relative increase of the contact force, over that of the evaluated states, from which a state is evaluated.
 constexpr double harder = 5e-3;
-
-}  // namespace
 
 double evaluation_work(const Body& body) {
   double work = 0.0;

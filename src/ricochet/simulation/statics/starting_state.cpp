@@ -194,10 +194,6 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Warns of small overlaps; deeper ones are refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   const PenetratingPoints inside = initially_penetrating_points(problem, state.displacement);
@@ -285,10 +281,6 @@ void require_upright_cells(const SemidiscreteProblem& problem, const Vector& dis
     throw Error(ErrorKind::invalid_input, fmt::format("initial.displacement: {}", error.what()));
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// A body that starts inside an obstacle or another body is pushed out at once, whatever the loads are: if that fails,
 /// the reasons given by the search concern the result rather than the cause.

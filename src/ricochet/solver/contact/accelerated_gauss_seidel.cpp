@@ -5,12 +5,10 @@
 
 namespace ricochet {
 
-namespace {
 /// Growth of the change from sweep to sweep that indicates a bad extrapolation.
 constexpr double growth = 2.0;
 /// Regularization relative to the largest product of residual steps: keeps nearly parallel ones apart.
 constexpr double ridge = 1e-13;
-}  // namespace
 
 void AcceleratedGaussSeidel::start(const ContactSystem& system) {
   if (residual_steps_.rows() != system.rows()) {

@@ -5,7 +5,6 @@
 
 namespace ricochet {
 
-namespace {
 /// Multiple of W from which a diagonal leaves p = 0 to rounding.
 constexpr double rigid = 0x1p60;
 /// Number of unknowns up to which LU in double precision is the fastest.
@@ -18,7 +17,6 @@ constexpr double factor_speed = 12.0;
 constexpr double factor_overhead = 60.0;
 /// Iterations with the factor of the system itself.
 constexpr Index fresh_iterations = 12;
-}  // namespace
 
 namespace {
 

@@ -6,7 +6,6 @@
 
 namespace ricochet {
 
-namespace {
 /// Multiple of the rounding of its terms below which a curvature is zero. It need not be sharp: a smaller one makes a
 /// long step, which ends with the first reaction that vanishes.
 constexpr double vanishing = 8.0;
@@ -16,7 +15,6 @@ constexpr double contradicting = 64.0;
 constexpr double negligible = 1e-12;
 /// Largest number of corrections of the reactions for the rounding in u_P.
 constexpr int corrections = 3;
-}  // namespace
 
 /// Computes d_P and s of a row that enters. The rounding of L Lᵀ is that of √W_ii √W_jj, entry by entry.
 DualActiveSet::Entry DualActiveSet::examine(Index entering) {

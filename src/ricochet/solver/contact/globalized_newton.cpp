@@ -9,8 +9,6 @@
 
 namespace ricochet {
 
-namespace {
-
 /// After this many steps whose residual only the rounding of q excuses, the iterate is projected on its law, and
 /// accepted if that is solved.
 constexpr int inexact_limit = 3;
@@ -25,8 +23,6 @@ constexpr int newton_step_cuts = 8;
 constexpr double sufficient_decrease = 1e-4;
 /// Reduction of the residual of a linear system while the points still change their states.
 constexpr double loose_reduction = 1e-3;
-
-}  // namespace
 
 double contact_merit(const ContactSystem& system, const ContactIterate& iterate) {
   double sum = 0.0;

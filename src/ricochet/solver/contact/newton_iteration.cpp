@@ -8,7 +8,6 @@
 
 namespace ricochet {
 
-namespace {
 constexpr int step_limit = 200;
 /// Halvings of a step.
 constexpr int cut_limit = 12;
@@ -17,7 +16,6 @@ constexpr int jump_limit = 12;
 /// Required part of the first-order decrease.
 constexpr double sufficient = 1e-4;
 constexpr auto none = static_cast<std::size_t>(-1);
-}  // namespace
 
 bool NewtonSystem::solve(const ContactSystem& system, const std::vector<PointEquation>& equations, Vector& change) {
   const bool solved =

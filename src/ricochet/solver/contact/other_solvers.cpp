@@ -6,12 +6,10 @@
 
 namespace ricochet {
 
-namespace {
 /// Largest number of operations of factors, or of entries of W.
 constexpr double max_factor_work = 1e11;
 constexpr double max_sweep_work = 4e9;
 constexpr int fewest_worth_a_try = 5;
-}  // namespace
 
 const std::vector<OtherSolvers::Kind> OtherSolvers::first{{"newton-alart-curnier", true, 60},
                                                           {"newton-fischer-burmeister", true, 150}};

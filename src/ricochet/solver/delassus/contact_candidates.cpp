@@ -6,8 +6,6 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Factor by which a stage may move points farther than the last one did.
 constexpr double reserve = 2.0;
 /// Points within so many reaches are added together.
@@ -26,8 +24,6 @@ constexpr double deep = 0.5;
 constexpr std::size_t oversize = 3;
 constexpr std::size_t few_points = 32;
 constexpr int patience = 100;
-
-}  // namespace
 
 void ContactCandidates::add_candidates(const std::vector<Index>& points) {
   for (const Index point : points) {

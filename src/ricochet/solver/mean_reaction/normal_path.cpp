@@ -5,8 +5,6 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Distance behind the beginning of a piece at which its set is determined: changes in between are of its square.
 constexpr double behind_change = 1e-9;
 /// Part of the largest reaction, or of the largest gap without reactions, below which values are rounding.
@@ -15,8 +13,6 @@ constexpr double path_rounding = 1e-13;
 constexpr double closed_gap = 1e-12;
 /// Exchanges of all wrong points without progress, before points are added one by one.
 constexpr int patience_of_exchange = 10;
-
-}  // namespace
 
 /// Computes r and y at q with the points of the set. Returns false if the inverse is useless.
 bool NormalPath::evaluate(const Vector& q) {

@@ -6,12 +6,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Part of U_pp that remains after elimination of the set, at which p depends on the set.
 constexpr double dependent = 1e-11;
-
-}  // namespace
 
 /// Computes x = U⁻¹x on the set.
 void PathActiveSet::solve(Vector& x) const {

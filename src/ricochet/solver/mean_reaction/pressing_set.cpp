@@ -7,12 +7,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Part of U_pp that must remain after elimination of the set.
 constexpr double singular = 1e-13;
-
-}  // namespace
 
 void PressingSet::prepare(const Matrix& u) {
   u_ = &u;

@@ -5,8 +5,6 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Value in place of κ: the tangential reaction is proportional to the normal one.
 constexpr double on_cone = 2.0;
 /// Relative distance from the cone up to which a reaction slips.
@@ -17,8 +15,6 @@ constexpr double work_rounding = 1e-13;
 constexpr double path_continuity = 1e-6;
 /// Number of iterations after which κ = 0 wherever friction creates energy.
 constexpr int max_share_iterations = 4;
-
-}  // namespace
 
 void ReactionPath::prepare(const Matrix& u, const std::vector<Index>& row_offset, bool definite) {
   u_ = &u;

@@ -2,12 +2,8 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Stored columns are whole, and cost two thirds more than A: more than one per so many nodes are not stored.
 constexpr Index nodes_per_column = 16;
-
-}  // namespace
 
 void MovedProduct::make(const StageProduct& product, const std::vector<Index>& nodes, Index all_nodes, int d) {
   clear();

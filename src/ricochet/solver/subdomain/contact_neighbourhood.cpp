@@ -6,16 +6,12 @@
 
 namespace ricochet {
 
-namespace {
-
 /// Layers of nodes around the points that required subdomains.
 constexpr int reserve_layers = 3;
 /// Layers per cell that a wave crosses in a step, behind which the influence of the rest of the body on the contact has
 /// decayed to a tenth.
 constexpr double layers_per_cell_crossed = 1.2;
 constexpr int min_layers = 2;
-
-}  // namespace
 
 double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                      const StageProduct& product, const std::vector<Index>& nodes) {
