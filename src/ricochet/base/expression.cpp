@@ -4,7 +4,6 @@
 #include <muParser.h>
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "ricochet/base/error.hpp"

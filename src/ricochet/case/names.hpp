@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/fem/material_law.hpp"
 #include "ricochet/io/fields/field_source.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "ricochet/case/case.hpp"
 #include "ricochet/case/problems.hpp"
 #include "ricochet/case/toml_tree.hpp"

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "ricochet/base/error.hpp"
 #include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <cmath>
 #include <numbers>
 
 #include "ricochet/fem/reference_element.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "ricochet/fem/cell_dilatation.hpp"
 #include "ricochet/fem/element_matrices.hpp"

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ricochet/base/registry.hpp"
 #include "ricochet/base/types.hpp"

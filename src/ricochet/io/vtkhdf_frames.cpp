@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
-#include <algorithm>
-
 namespace ricochet {
 
 namespace {

@@ -1,6 +1,5 @@
 #include "ricochet/linear_algebra/principal_factor.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace ricochet {

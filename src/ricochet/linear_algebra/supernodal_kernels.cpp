@@ -1,7 +1,5 @@
 #include "ricochet/linear_algebra/supernodal_kernels.hpp"
 
-#include <algorithm>
-
 #include "ricochet/base/packs.hpp"
 #include "ricochet/linear_algebra/supernode_layout.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "ricochet/linear_algebra/supernode_layout.hpp"
 
 /// @file Triangular solves with one supernode on all threads.

@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 /// @file Running the gmsh program. Private to mesh/.
 namespace ricochet::gmsh {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"

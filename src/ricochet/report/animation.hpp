@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 /// @file Pictures of a moving body, described in JSON for the script that draws them.
 namespace ricochet {

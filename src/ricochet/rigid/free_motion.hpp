@@ -1,9 +1,5 @@
 #pragma once
 
-#include <array>
-#include <string>
-#include <vector>
-
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/rigid/pose.hpp"
 

@@ -1,6 +1,5 @@
 #include "ricochet/run/cost_estimate.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/timer.hpp"

@@ -1,7 +1,6 @@
 #include "ricochet/run/method_watch.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/base/error.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <limits>
 #include <optional>
-#include <string>
 
 #include "ricochet/io/summary.hpp"
 #include "ricochet/scheme/scheme.hpp"

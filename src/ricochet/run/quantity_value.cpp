@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"

@@ -1,7 +1,6 @@
 #include "ricochet/scheme/critical_step.hpp"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "ricochet/linear_algebra/largest_eigenvalue.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"

@@ -1,7 +1,5 @@
 #include "ricochet/contact/mortar/pair_integration.hpp"
 
-#include <algorithm>
-
 namespace ricochet {
 
 void gather_points(const FacetMap& map, Index facet, const FacetSegments& segments, FacetPoints& points) {

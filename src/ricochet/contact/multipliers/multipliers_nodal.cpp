@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <map>
 
 #include "ricochet/contact/multipliers/multiplier_space.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "ricochet/contact/row_values.hpp"
 #include "ricochet/scheme/state.hpp"

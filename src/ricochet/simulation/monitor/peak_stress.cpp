@@ -1,7 +1,6 @@
 #include "ricochet/simulation/monitor/peak_stress.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/cell_integration.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"

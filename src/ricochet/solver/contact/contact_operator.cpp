@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {

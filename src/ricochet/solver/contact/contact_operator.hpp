@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <vector>
 
 #include "ricochet/base/types.hpp"
 #include "ricochet/solver/contact/contact_point.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ricochet/linear_algebra/dense_kernels.hpp"
 

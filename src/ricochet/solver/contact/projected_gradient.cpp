@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/solver/contact/cone_formulation.hpp"

@@ -1,7 +1,6 @@
 #include "ricochet/solver/contact/reused_factor.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/linear_algebra/dense_kernels.hpp"
 

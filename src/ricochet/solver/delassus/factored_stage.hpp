@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/solver/stage/shared_contact.hpp"
 #include "ricochet/solver/stage/solver_options.hpp"
