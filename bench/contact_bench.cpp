@@ -69,7 +69,7 @@ const char* outcome_name(ContactOutcome outcome) {
 
 void print(const Arguments& arguments, const std::string& file, const ContactSolution& solution, double seconds) {
   long counts[4] = {};
-  for (const ContactStatus status : solution.status) ++counts[static_cast<int>(status)];
+  for (const ContactStatus status : solution.status) ++counts[int(status)];
   std::printf(
       "{\"problem\": \"%s\", \"solver\": \"%s\", \"tolerance\": %g, \"seconds\": %.9g, \"outcome\": \"%s\", "
       "\"residual\": %.6g, \"rounding_floor\": %.6g, \"iterations\": %d, \"newton_steps\": %d, \"factorizations\": %d, "
@@ -87,7 +87,7 @@ void print(const Arguments& arguments, const std::string& file, const ContactSol
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
 

@@ -56,7 +56,7 @@ Generator elastic_twice(Index dimension) {
   return [=](unsigned seed) {
     std::mt19937 random(seed);
     const double friction = one_of(std::array{0.0, 0.3, 1.0}, random);
-    const auto size = static_cast<Index>(random() % 50);
+    const auto size = Index(random() % 50);
     if (dimension == 2) return twice(random_problem(10 + size, 2, friction, seed, 3.0));
     FrictionProblem problem = half_space_problem(3 + size % 6, friction);
     problem.q += 0.05 * uniform(problem.q.size(), random);
@@ -80,7 +80,7 @@ Generator unequal(Index dimension, double power) {
   return [=](unsigned seed) {
     std::mt19937 random(seed);
     const double friction = one_of(std::array{0.0, 0.3, 1.0, 3.0}, random);
-    const auto points = static_cast<Index>(5 + 5 * (random() % 12));
+    const auto points = Index(5 + 5 * (random() % 12));
     return unequal_bodies(points, dimension, friction, 12.0, power, seed);
   };
 }
@@ -105,7 +105,7 @@ Generator uneven_rows(Index dimension) {
   return [=](unsigned seed) {
     std::mt19937 random(seed);
     const double friction = one_of(std::array{0.0, 0.3, 1.0, 3.0}, random);
-    const auto points = static_cast<Index>(5 + 5 * (random() % 8));
+    const auto points = Index(5 + 5 * (random() % 8));
     const FrictionProblem problem = unequal_bodies(points, dimension, friction, 0.0, 1.0, seed);
     Vector scales(problem.q.size());
     for (double& scale : scales) scale = std::pow(10.0, 1.5 * uniform(random));
@@ -144,10 +144,10 @@ struct Tally {
     std::vector<double> sorted = seconds;
     std::ranges::sort(sorted);
     const double median = 1e3 * sorted[sorted.size() / 2];
-    const double percent = 100.0 / static_cast<double>(problems);
+    const double percent = 100.0 / double(problems);
     char result[80];
-    std::snprintf(result, sizeof result, "%.2g / %.2g; %.2g", percent * static_cast<double>(unsolved[0]),
-                  percent * static_cast<double>(unsolved[1]), median);
+    std::snprintf(result, sizeof result, "%.2g / %.2g; %.2g", percent * double(unsolved[0]),
+                  percent * double(unsolved[1]), median);
     return std::isfinite(median) ? result : std::string(result).substr(0, std::string(result).find(';')) + "; –";
   }
 };
@@ -192,8 +192,8 @@ void print_row(const std::string& name, long problems, const std::vector<Tally>&
 }  // namespace
 
 int main(int count, char** values) {
-  const auto seeds = static_cast<unsigned>(count > 1 ? std::atoi(values[1]) : 500);
-  const auto seeds_of_others = static_cast<unsigned>(count > 2 ? std::atoi(values[2]) : 30);
+  const auto seeds = unsigned(count > 1 ? std::atoi(values[1]) : 500);
+  const auto seeds_of_others = unsigned(count > 2 ? std::atoi(values[2]) : 30);
   std::vector<std::string> solvers;
   for (const auto& solver : contact_solver_registry().all()) {
     if (solver.name != "active-set") solvers.push_back(solver.name);  // for definite W without friction or in 2D only
@@ -212,7 +212,7 @@ int main(int count, char** values) {
         for (std::size_t s = 0; s < solvers.size(); ++s)
           tallies[s].add(solve(solvers[s], generate, solvers[s] == "automatic" ? seeds : seeds_of_others));
       }
-      const long of_kind = static_cast<long>(kind.generators.size()) * seeds;
+      const long of_kind = long(kind.generators.size()) * seeds;
       print_row(prefix + kind.name, of_kind, tallies);
       problems += of_kind;
       for (std::size_t s = 0; s < solvers.size(); ++s) {

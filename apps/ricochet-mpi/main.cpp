@@ -70,7 +70,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
       std::fputs(text.str().c_str(), stdout);
       std::fputs(message.str().c_str(), stderr);
     }
-    return status == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+    return status == 0 ? 0 : int(ErrorKind::usage);
   }
   log::set_level(log::parse_level(arguments.log_level));
   if (arguments.run.quiet && log::enabled(log::Level::info) && !log::enabled(log::Level::debug))
@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
   } catch (const Error& problem) {
     return end(ranks, problem.exit_status(), problem.what());
   } catch (const std::bad_alloc&) {
-    return end(ranks, static_cast<int>(ErrorKind::invalid_input),
+    return end(ranks, int(ErrorKind::invalid_input),
                "out of memory: use more processes on more machines, or a coarser mesh");
   } catch (const std::exception& problem) {
     return end(ranks, defect_status, fmt::format("internal error: {}", problem.what()));

@@ -42,7 +42,7 @@ void print_materials(const Body& body) {
   const Vector volumes = cell_volumes(body);
   std::vector<double> volume(body.materials.size(), 0.0);
   for (Index cell = 0; cell < volumes.size(); ++cell)
-    volume[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])] += volumes[cell];
+    volume[std::size_t(body.cell_material[std::size_t(cell)])] += volumes[cell];
   for (std::size_t i = 0; i < body.materials.size(); ++i) {
     const Material& material = body.materials[i];
     fmt::print("  material \"{}\": {} {:.6g}, mass {:.6g}, speed of compression waves {:.5g}, of shear waves {:.5g}\n",
@@ -142,12 +142,12 @@ bool is_free_along_normals(const Case& input, const Model& model, int pair) {
   const ContactBoundary& contact = model.problem.contact;
   std::array<bool, 3> is_supported{};
   for (const SupportSection& support : input.supports) {
-    for (const int component : support.components) is_supported[static_cast<std::size_t>(component)] = true;
+    for (const int component : support.components) is_supported[std::size_t(component)] = true;
   }
   for (Index point = 0; point < contact.size(); ++point) {
-    if (contact.pair[static_cast<std::size_t>(point)] != pair) continue;
+    if (contact.pair[std::size_t(point)] != pair) continue;
     for (Index k = 0; k < contact.dimension; ++k) {
-      if (is_supported[static_cast<std::size_t>(k)] && std::abs(contact.rows->normals(k, point)) > 1e-9) return false;
+      if (is_supported[std::size_t(k)] && std::abs(contact.rows->normals(k, point)) > 1e-9) return false;
     }
   }
   return true;
@@ -160,7 +160,7 @@ std::optional<double> time_of_meeting(const Model& model, std::size_t pair) {
   const ContactBoundary& contact = model.problem.contact;
   std::optional<double> meets;
   for (Index point = 0; point < contact.size(); ++point) {
-    if (contact.pair[static_cast<std::size_t>(point)] != static_cast<int>(pair)) continue;
+    if (contact.pair[std::size_t(point)] != int(pair)) continue;
     const double gap = contact.initial_gap[point];
     if (contact.slides(point) && gap >= contact.unpaired_gap) continue;
     SpaceVector velocity = SpaceVector::Zero(contact.dimension);
@@ -178,7 +178,7 @@ void print_bodies_contact(const Case& input, const Model& model, std::size_t pai
   const PairingDescription facing = *describe_facing(model, pair);
   std::string text = facing_text(facing);
   if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
-      is_free_along_normals(input, model, static_cast<int>(pair))) {
+      is_free_along_normals(input, model, int(pair))) {
     if (const std::optional<double> meets = time_of_meeting(model, pair))
       text += "; the bodies" + meeting_text(*meets, input, "would meet", "do not approach each other in free flight");
   }
@@ -199,8 +199,7 @@ struct Flight {
 double time_of_contact(const std::vector<Flight>& flights, const Obstacle& obstacle, double end) {
   constexpr double evaluations = 1e6;
   constexpr int least_instants = 100, most_instants = 10000, halvings = 50;
-  const int instants =
-      std::clamp(static_cast<int>(evaluations / static_cast<double>(flights.size())), least_instants, most_instants);
+  const int instants = std::clamp(int(evaluations / double(flights.size())), least_instants, most_instants);
   const auto touches = [&](double time) {
     const PosedObstacle placed = obstacle.at(time);
     return std::ranges::any_of(flights, [&](const Flight& flight) { return placed.gap(flight.at(time)) <= 0.0; });
@@ -229,12 +228,12 @@ std::string obstacle_meeting_text(const Case& input, const Model& model, std::si
   const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
   if (obstacle.free_motion() != nullptr || obstacle.steered_path() != nullptr) return "";
   SpaceVector gravity = SpaceVector::Zero(d);
-  for (std::size_t k = 0; k < input.load.gravity.size(); ++k) gravity[static_cast<Index>(k)] = input.load.gravity[k];
+  for (std::size_t k = 0; k < input.load.gravity.size(); ++k) gravity[Index(k)] = input.load.gravity[k];
   std::vector<Flight> flights;
   double meets = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
-    if (contact.node_pair[i] != static_cast<int>(pair)) continue;
-    const auto row = static_cast<Index>(i);
+    if (contact.node_pair[i] != int(pair)) continue;
+    const auto row = Index(i);
     flights.push_back(
         {model.space.nodes.col(contact.nodes[i]), model.initial.velocity.segment(contact.nodes[i] * d, d), gravity});
     meets =
@@ -278,8 +277,8 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
   const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
   double nearest = std::numeric_limits<double>::infinity(), rounding = 0.0;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
-    if (contact.node_pair[i] != static_cast<int>(pair)) continue;
-    const double gap = contact.node_initial_gap[static_cast<Index>(i)];
+    if (contact.node_pair[i] != int(pair)) continue;
+    const double gap = contact.node_initial_gap[Index(i)];
     if (gap < nearest) rounding = obstacle.gap_rounding(model.space.nodes.col(contact.nodes[i]));
     nearest = std::min(nearest, gap);
   }
@@ -312,7 +311,7 @@ void print_groups(const Mesh& of_file, bool axisymmetric) {
     const bool are_cells = group.dimension == d;
     fmt::print("  group \"{}\": {} of dimension {}, {} {:.5g}, centre {}, from {} to {}{}\n", group.name,
                counted(group.members.size(), are_cells ? "cell" : "facet"), group.dimension,
-               sizes[static_cast<std::size_t>(group.dimension) + (axisymmetric ? 1 : 0)], measure.size,
+               sizes[std::size_t(group.dimension) + (axisymmetric ? 1 : 0)], measure.size,
                vector_text(measure.centre.head(d), size), vector_text(measure.lowest.head(d), size),
                vector_text(measure.highest.head(d), size), are_cells ? "" : normal_text(measure, d));
   }

@@ -61,7 +61,7 @@ int benchmark(const BenchmarkArguments& arguments) {
   }
   const std::vector<Benchmark> chosen = choose_benchmarks(all, arguments.names);
   BenchmarkOptions options;
-  options.pool.jobs = arguments.jobs > 0 ? static_cast<std::size_t>(arguments.jobs) : usable_cores();
+  options.pool.jobs = arguments.jobs > 0 ? std::size_t(arguments.jobs) : usable_cores();
   options.pool.quiet = arguments.quiet;
   options.pool.stop_signal = stop_signal;
   options.resume = arguments.resume;

@@ -36,9 +36,9 @@ std::string points_text(const FclibProblem& file) {
 }
 
 std::string matrix_text(const SparseMatrix& w) {
-  const double all = static_cast<double>(w.rows()) * static_cast<double>(w.cols());
+  const double all = double(w.rows()) * double(w.cols());
   return fmt::format("{0} x {0}, {1} entries ({2:.3g} %)", w.rows(), w.nonZeros(),
-                     all > 0.0 ? 100.0 * static_cast<double>(w.nonZeros()) / all : 0.0);
+                     all > 0.0 ? 100.0 * double(w.nonZeros()) / all : 0.0);
 }
 
 std::string outcome_text(const ContactSolution& solution) {

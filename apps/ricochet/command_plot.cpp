@@ -40,7 +40,7 @@ std::pair<double, double> two_numbers(const std::string& text, char separator, c
 std::string format_of(const std::string& output, std::initializer_list<const char*> formats, const char* what) {
   std::string extension = fs::path(output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+                 [](unsigned char c) { return char(std::tolower(c)); });
   for (const char* const supported : formats) {
     if (extension == std::string(".") + supported) return supported;
   }

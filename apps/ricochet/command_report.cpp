@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 ReportOptions options_of(const ReportArguments& arguments) {
   ReportOptions options;
   options.viewer = installed_file("viewer.html", "the template of reports");
-  options.most_bytes = static_cast<std::size_t>(arguments.most_megabytes * 1e6);
+  options.most_bytes = std::size_t(arguments.most_megabytes * 1e6);
   return options;
 }
 
@@ -117,7 +117,7 @@ int report(const ReportArguments& arguments) {
   read_with_retries(arguments.directories, [&] { page = make_report(arguments.directories, options); });
   write_durably(output, page.html);
   for (const std::string& sentence : page.thinned) log::info(fmt::format("report: {}", sentence));
-  fmt::print("{}: {:.1f} MB; open it in a browser\n", output, 1e-6 * static_cast<double>(page.html.size()));
+  fmt::print("{}: {:.1f} MB; open it in a browser\n", output, 1e-6 * double(page.html.size()));
   return 0;
 }
 

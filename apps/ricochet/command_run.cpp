@@ -78,7 +78,7 @@ void require_same_case_file(const Ranks& ranks, const std::string& path) {
   double own = unreadable;
   try {
     const std::string text = read_file(path);
-    own = static_cast<double>(Checksum().add_bytes(text.data(), text.size()).value());
+    own = double(Checksum().add_bytes(text.data(), text.size()).value());
   } catch (const Error&) {  // reading the case reports the reason if no process can
   }
   const Ranks::ForEach<double> all = ranks.all_gather({own});
@@ -135,7 +135,7 @@ int run(const RunArguments& given) {
   const RunSummary summary = run_case(session, options);
   if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
   // Any process may have received the signal.
-  if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
+  if (summary.status == "interrupted") return 128 + int(arguments.ranks->maximum(stop_signal()));
   // Expectations have positions in the case, but hold in some of its runs only.
   if (options.quiet) log::set_run_name(options.output_directory);
   // The first process evaluates the expectations, and all end accordingly.

@@ -82,9 +82,8 @@ int study(const StudyArguments& given) {
   const StudyPlan plan = goes_on ? before.plan : plan_of(arguments);
   StudyOptions options;
   options.threads = arguments.threads;
-  options.jobs = arguments.jobs > 0
-                     ? static_cast<std::size_t>(arguments.jobs)
-                     : std::max<std::size_t>(1, usable_cores() / static_cast<std::size_t>(arguments.threads));
+  options.jobs = arguments.jobs > 0 ? std::size_t(arguments.jobs)
+                                    : std::max<std::size_t>(1, usable_cores() / std::size_t(arguments.threads));
   options.resume = arguments.resume;
   options.force = arguments.force;
   options.quiet = arguments.quiet;

@@ -68,7 +68,7 @@ std::string iterations_note(const CostEstimate& cost) {
 
 void print_estimates(const Case& input, const Model& model, const CostEstimate& cost) {
   for (std::size_t k = 0; k < cost.stages.size(); ++k) print_estimate(cost.stages[k], k);
-  const auto steps = static_cast<double>(step_count(input.time));
+  const auto steps = double(step_count(input.time));
   const Index points = model.problem.contact.size();
   const auto of_run = [&](double step) { return cost.factorization_seconds + steps * step; };
   fmt::print("estimate, a step{}: {}\n", iterations_note(cost),

@@ -148,7 +148,7 @@ void print_run_results(const std::vector<Run>& runs, int width) {
              "largest stress");
   for (const auto& [directory, summary] : runs) {
     const ResultCells cells(summary, marks);
-    const std::size_t impacts = summary.impacts.size() + static_cast<std::size_t>(summary.impacts_left_out);
+    const std::size_t impacts = summary.impacts.size() + std::size_t(summary.impacts_left_out);
     fmt::print("{:<{}} {:>12} {:>14} {:>14} {:>16}\n", directory, width, impacts, cells.restitution(),
                cells.largest_force(), cells.peak_stress());
   }
@@ -166,8 +166,8 @@ void print_comparison(const std::vector<std::string>& directories) {
     runs.push_back({directory, read_summary_of_run(directory)});
     width = std::max(width, directory.size());
   }
-  print_methods(runs, static_cast<int>(width));
-  print_run_results(runs, static_cast<int>(width));
+  print_methods(runs, int(width));
+  print_run_results(runs, int(width));
 }
 
 }  // namespace ricochet::program

@@ -287,7 +287,7 @@ int dispatch(int argc, char** argv) {
     std::ostringstream text;
     const int status = app.exit(problem, text, std::cerr);
     std::fputs(text.str().c_str(), stdout);
-    return status == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+    return status == 0 ? 0 : int(ErrorKind::usage);
   }
   if (info->parsed() || validate->parsed() || schema->parsed() || completion->parsed() ||
       (contact->parsed() && arguments.contact.output.empty()))
@@ -329,14 +329,14 @@ int run_program(int argc, char** argv) {
                  log::with_run_name(
                      "out of memory; use a coarser mesh, or ricochet-mpi on several machines (docs/distributed.md)")
                      .c_str());
-    return static_cast<int>(ErrorKind::not_converged);
+    return int(ErrorKind::not_converged);
   } catch (const std::filesystem::filesystem_error& problem) {
     std::fprintf(stderr, "ricochet: %s: %s\n", problem.path1().c_str(), problem.code().message().c_str());
-    return static_cast<int>(ErrorKind::file_access);
+    return int(ErrorKind::file_access);
   } catch (const std::exception& problem) {
     if (program::standard_output_failed()) {
       std::fprintf(stderr, "ricochet: standard output: %s\n", problem.what());
-      return static_cast<int>(ErrorKind::file_access);
+      return int(ErrorKind::file_access);
     }
     std::fprintf(stderr, "ricochet: internal error: %s\n", problem.what());
     return 70;

@@ -29,8 +29,8 @@ constexpr double rounding_of_slip = 1e-6;
 /// Describes the sliding of a contact that was pressed somewhere.
 std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
   if (!(pair.slip > rounding_of_slip * pair.limit)) return "";
-  if (pair.contact < 0 || pair.contact >= static_cast<int>(s.contacts.size())) return "";
-  const ContactDescription& contact = s.contacts[static_cast<std::size_t>(pair.contact)];
+  if (pair.contact < 0 || pair.contact >= int(s.contacts.size())) return "";
+  const ContactDescription& contact = s.contacts[std::size_t(pair.contact)];
   std::string text = fmt::format("\n  \"{}\" and \"{}\" slid along each other by up to {:.3g} while in contact",
                                  contact.group, contact.opponent, pair.slip);
   if (pair.is_beyond()) {
@@ -41,8 +41,8 @@ std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
 }
 
 std::string unsettled_text(const UnsettledContact& unsettled, const RunSummary& s) {
-  if (unsettled.contact < 0 || unsettled.contact >= static_cast<int>(s.contacts.size())) return "";
-  const ContactDescription& contact = s.contacts[static_cast<std::size_t>(unsettled.contact)];
+  if (unsettled.contact < 0 || unsettled.contact >= int(s.contacts.size())) return "";
+  const ContactDescription& contact = s.contacts[std::size_t(unsettled.contact)];
   return fmt::format(
       "\n  {}: up to {:.3g} % of the force of {} is at stake at points where frozen steps have left {} (up to {:.3g}, "
       "from t = {:.6g} on)",

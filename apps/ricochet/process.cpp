@@ -47,7 +47,7 @@ void open_closed_streams() {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
     if (descriptor == STDOUT_FILENO) output_was_closed = true;
     // The lowest free descriptor is this one, as those below are open.
-    if (open("/dev/null", O_RDWR) != descriptor) _exit(static_cast<int>(ErrorKind::file_access));
+    if (open("/dev/null", O_RDWR) != descriptor) _exit(int(ErrorKind::file_access));
   }
 }
 

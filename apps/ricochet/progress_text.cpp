@@ -79,15 +79,14 @@ void print_progress(const std::string& directory, const RunSummary& summary) {
                100.0 * summary.adaptive->time / summary.end_time);
     return print_checkpoints(directory, summary);
   }
-  const auto done = static_cast<double>(summary.steps), all = static_cast<double>(summary.all_steps);
-  fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", step, summary.all_steps, 100.0 * static_cast<double>(step) / all,
-             static_cast<double>(step) * summary.step);
+  const auto done = double(summary.steps), all = double(summary.all_steps);
+  fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", step, summary.all_steps, 100.0 * double(step) / all,
+             double(step) * summary.step);
   const double seconds =
       seconds_of(summary, "steps") + seconds_of(summary, "output") + seconds_of(summary, "checkpoints");
   if (done > 0.0 && seconds > 0.0) {
     fmt::print(", {:.3g} steps per second", done / seconds);
-    if (is_running(directory, summary))
-      fmt::print(", {} left", duration_text(seconds / done * (all - static_cast<double>(step))));
+    if (is_running(directory, summary)) fmt::print(", {} left", duration_text(seconds / done * (all - double(step))));
   }
   fmt::print("\n");
   print_checkpoints(directory, summary);
@@ -111,7 +110,7 @@ void describe_checkpoint(const std::string& path) {
   const Snapshot::Texts& keys = snapshot.texts("identity.case.keys");
   const Snapshot::Texts& values = snapshot.texts("identity.case.values");
   for (const char* key : {"time.scheme", "mass.type", "time.step", "time.end"}) {
-    const auto at = static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin());
+    const auto at = std::size_t(std::ranges::find(keys, key) - keys.begin());
     if (at < std::min(keys.size(), values.size())) fmt::print("  {} = {}\n", key, values[at]);
   }
 }

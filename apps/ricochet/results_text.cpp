@@ -23,7 +23,7 @@ double radius_of(const BodyDescription& body) {
 std::string position_text(const std::vector<double>& point, const RunSummary& summary) {
   double size = 0.0;
   for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
-  return vector_text(Eigen::Map<const Vector>(point.data(), static_cast<Index>(point.size())), size, 5);
+  return vector_text(Eigen::Map<const Vector>(point.data(), Index(point.size())), size, 5);
 }
 
 /// Returns a spin; in the plane it is a single number. Components smaller than `least` are 0.
@@ -42,7 +42,7 @@ std::string spins_text(int body, const RigidMotionState& before, const RigidMoti
                        const RunSummary& summary) {
   const double largest = std::max(before.spin.norm(), after.spin.norm());
   const double speed = std::max(before.velocity.norm(), after.velocity.norm());
-  const double radius = radius_of(summary.bodies[static_cast<std::size_t>(body)]);
+  const double radius = radius_of(summary.bodies[std::size_t(body)]);
   if (!(largest * radius > rounding_of_spin * speed)) return "";
   const double least = rounding_of_spin * std::max(largest, speed / radius);
   return fmt::format("{} before and {} after", spin_text(before.spin, summary.dimension, least),
@@ -50,7 +50,7 @@ std::string spins_text(int body, const RigidMotionState& before, const RigidMoti
 }
 
 std::string body_text(int number, const RunSummary& summary) {
-  const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
+  const std::string& name = summary.bodies[std::size_t(number)].name;
   return name.empty() ? fmt::format("body {}", number) : name;
 }
 
@@ -203,7 +203,7 @@ void print_impacts(const RunSummary& summary, std::size_t most) {
   const std::size_t count = summary.impacts.size();
   const std::size_t shown = most == 0 ? count : std::min(most, count);
   for (std::size_t i = 0; i < shown; ++i) fmt::print("  impact {}: {}\n", i + 1, impact_text(i, summary));
-  const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
+  const auto others = long(count - shown) + summary.impacts_left_out;
   if (others > 0) fmt::print("  {}{}\n", counted(others, "more impact"), most == 0 ? "" : ", see summary.json");
 }
 
@@ -246,7 +246,7 @@ std::vector<ProbeNodes> probes_of(const RunSummary& summary) {
 
 std::string probe_position_text(const RunSummary& summary, std::size_t probe) {
   const std::vector<double>& at = summary.probes[probe].position;
-  return vector_text(Eigen::Map<const Vector>(at.data(), static_cast<Index>(at.size())));
+  return vector_text(Eigen::Map<const Vector>(at.data(), Index(at.size())));
 }
 
 /// Returns true if the force of a probe has a digest; probes with rows of their own have none.
@@ -296,7 +296,7 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
   if (expectations.empty()) return;
   const auto met = std::ranges::count_if(expectations, [](const auto& e) { return e.checked && e.holds; });
   const auto left_out = std::ranges::count_if(expectations, [](const auto& e) { return !e.checked; });
-  const auto checked = static_cast<long>(expectations.size()) - left_out;
+  const auto checked = long(expectations.size()) - left_out;
   const std::string others = fmt::format("{} not apply to this run (see summary.json for the reason)",
                                          left_out == 1 ? "1 does" : fmt::format("{} do", left_out));
   if (checked == 0) {

@@ -66,7 +66,7 @@ int next_request(const sigset_t& awaited, int first, std::chrono::steady_clock::
     if (signal != first || steady_clock::now() > instant + same_request) return signal;
     if (milliseconds < 0) continue;
     const auto rest = std::chrono::duration_cast<std::chrono::milliseconds>(end - steady_clock::now()).count();
-    left = std::max(0, static_cast<int>(rest));
+    left = std::max(0, int(rest));
   }
 }
 

@@ -69,7 +69,7 @@ std::string box_mesh(Random& random, int d, bool simplices, const std::array<int
           }
           // Six tetrahedra around the diagonal 0–6; the facets of all cubes are divided alike.
           for (const auto& [p, q] : {std::pair{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}) {
-            add(4, 1, {v[0], v[static_cast<std::size_t>(p)], v[static_cast<std::size_t>(q)], v[6]});
+            add(4, 1, {v[0], v[std::size_t(p)], v[std::size_t(q)], v[6]});
           }
         }
       }

@@ -11,11 +11,9 @@
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
-  }
+  double between(double low, double high) { return low + (high - low) * (double(engine_()) / 4294967296.0); }
   double power(double low, double high) { return std::pow(10.0, between(low, high)); }
-  int integer(int low, int high) { return low + static_cast<int>(between(0.0, 1.0) * (high - low + 1)); }
+  int integer(int low, int high) { return low + int(between(0.0, 1.0) * (high - low + 1)); }
   bool chance(double part) { return between(0.0, 1.0) < part; }
 
  private:

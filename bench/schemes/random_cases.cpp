@@ -127,8 +127,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   log::set_level(log::Level::off);
-  const auto first = static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10));
-  const auto count = static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10));
+  const auto first = unsigned(std::strtoul(argv[2], nullptr, 10));
+  const auto count = unsigned(std::strtoul(argv[3], nullptr, 10));
   const std::string wanted = argc > 4 ? argv[4] : "";
   const bool keeps = argc > 5;
   const std::filesystem::path folder =

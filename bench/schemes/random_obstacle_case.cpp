@@ -20,7 +20,7 @@ std::string sphere_text(Random& random, int d, double size, double gap) {
   const double radius = size * (hollow ? random.power(0.2, 2.0) : random.power(-0.5, 2.0));
   std::array<double, 3> centre{0.5 * size, 0.5 * size, 0.5 * size};
   const double half_diagonal = 0.5 * size * std::sqrt(d - 1.0);
-  centre[static_cast<std::size_t>(d - 1)] =
+  centre[std::size_t(d - 1)] =
       hollow ? std::sqrt(radius * radius - half_diagonal * half_diagonal) - gap : -radius - gap;
   return fmt::format("type = \"sphere\"\ncentre = {}\nradius = {:.9g}\nside = \"{}\"\n", vector_text(d, centre), radius,
                      hollow ? "inside" : "outside");
@@ -51,16 +51,14 @@ RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::files
   const bool simplices = random.chance(0.5);
   const int degree = random.chance(d == 2 ? 0.4 : 0.2) ? 2 : 1;
   std::array<int, 3> counts{};
-  for (int k = 0; k < 3; ++k)
-    counts[static_cast<std::size_t>(k)] = d == 2 ? random.integer(3, 9) : random.integer(3, 4);
+  for (int k = 0; k < 3; ++k) counts[std::size_t(k)] = d == 2 ? random.integer(3, 9) : random.integer(3, 4);
   const double size = random.power(-2.0, 0.0);
   const double aspect = random.chance(0.25) ? random.between(2.0, 5.0) : random.between(0.5, 1.5);
   std::array<double, 3> lengths{size, size * aspect, size};
   if (d == 3) std::swap(lengths[1], lengths[2]);
-  const auto up = static_cast<std::size_t>(d - 1);
+  const auto up = std::size_t(d - 1);
   result.cell = 1e300;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
-    result.cell = std::min(result.cell, lengths[k] / counts[k]);
+  for (std::size_t k = 0; k < std::size_t(d); ++k) result.cell = std::min(result.cell, lengths[k] / counts[k]);
   const std::string mesh = (folder / fmt::format("mesh_{}.msh", seed)).string();
   std::ofstream(mesh) << box_mesh(random, d, simplices, counts, lengths);
 
@@ -82,7 +80,7 @@ RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::files
   normal[up] = 1.0;
   normal[0] = supported ? 0.0 : random.between(-0.05, 0.05);
   point[up] = -gap - std::abs(normal[0]) * size;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) velocity[k] = speed * random.between(-1.0, 1.0);
+  for (std::size_t k = 0; k < std::size_t(d); ++k) velocity[k] = speed * random.between(-1.0, 1.0);
   velocity[up] = -std::abs(velocity[up]);
   pull[up] = -gravity;
   pull[0] = gravity * random.between(-0.5, 0.5);
@@ -99,11 +97,11 @@ RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::files
                                vector_text(d, normal));
   if (moving) {
     std::array<double, 3> drift{0.0, 0.0, 0.0};
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+    for (std::size_t k = 0; k < std::size_t(d); ++k)
       drift[k] = speed * random.between(-1.0, 1.0) * (k == up ? 0.2 : 1.0);
     if (turning) {
       text += "motion = [";
-      for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
+      for (std::size_t k = 0; k < std::size_t(d); ++k)
         text += fmt::format("{}\"{:.9g}*t\"", k == 0 ? "" : ", ", drift[k]);
       text += "]\n";
     } else {
@@ -113,7 +111,7 @@ RandomCase make_obstacle_case(unsigned seed, ObstacleKind kind, const std::files
   if (turning) text += rotation_text(random, d, sphere, size, std::min(speed / size, 0.5 / time));
   constexpr std::array<const char*, 4> spaces{"p0", "p1", "dual", "nodal"};
   const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\n",
-                                      result.friction, spaces[static_cast<std::size_t>(random.integer(0, 3))]);
+                                      result.friction, spaces[std::size_t(random.integer(0, 3))]);
   text += "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" + law;
   if (two) {
     std::array<double, 3> wall_normal{0.0, 0.0, 0.0}, wall_point = point;

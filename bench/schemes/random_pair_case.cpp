@@ -19,7 +19,7 @@ Box make_box(Random& random, int d, double size) {
   for (std::size_t k = 0; k < 3; ++k) {
     box.counts[k] = d == 2 ? random.integer(3, 9) : random.integer(3, 4);
     box.lengths[k] = size * random.between(0.5, 1.5);
-    if (k < static_cast<std::size_t>(d)) box.cell = std::min(box.cell, box.lengths[k] / box.counts[k]);
+    if (k < std::size_t(d)) box.cell = std::min(box.cell, box.lengths[k] / box.counts[k]);
   }
   return box;
 }
@@ -30,7 +30,7 @@ std::array<double, 2> lowest_corner(const Box& box, int d, double degrees) {
   const double angle = degrees * M_PI / 180.0, sign = d == 2 ? 1.0 : -1.0;
   std::array<double, 2> lowest{0.0, 1e300};
   for (const double x : {0.0, box.lengths[0]}) {
-    for (const double y : {0.0, box.lengths[static_cast<std::size_t>(d - 1)]}) {
+    for (const double y : {0.0, box.lengths[std::size_t(d - 1)]}) {
       const std::array<double, 2> turned{x * std::cos(angle) - sign * y * std::sin(angle),
                                          sign * x * std::sin(angle) + y * std::cos(angle)};
       if (turned[1] < lowest[1]) lowest = turned;
@@ -45,7 +45,7 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
   Random random(seed);
   RandomCase result;
   const int d = random.chance(0.65) ? 2 : 3;
-  const auto up = static_cast<std::size_t>(d - 1);
+  const auto up = std::size_t(d - 1);
   const bool lower_simplices = random.chance(0.5), upper_simplices = random.chance(0.5);
   const int degree = random.chance(d == 2 ? 0.4 : 0.2) ? 2 : 1;
   const double size = random.power(-2.0, 0.0);
@@ -73,7 +73,7 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
       normal{0.0, 0.0, 0.0};
   velocity[up] = -speed * random.between(0.1, 1.0);
   if (!on_floor) {
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) other[k] = 0.5 * speed * random.between(0.0, 1.0);
+    for (std::size_t k = 0; k < std::size_t(d); ++k) other[k] = 0.5 * speed * random.between(0.0, 1.0);
   }
   // They meet within the first half of the run. Tilted bodies meet at a corner, which is above the other body.
   const double gap = random.chance(0.3) ? 0.0 : (other[up] - velocity[up]) * time * random.between(0.02, 0.5);
@@ -114,14 +114,13 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
   constexpr std::array<const char*, 3> spaces{"p1", "dual", "nodal"};
   constexpr std::array<const char*, 3> sides{"automatic", "group", "against"};
   const bool may_be_constant = degree == 2 && (d == 2 || !(lower_simplices || upper_simplices));
-  const std::string space = may_be_constant && random.chance(0.25)
-                                ? "p0"
-                                : spaces[sliding ? 0 : static_cast<std::size_t>(random.integer(0, 2))];
+  const std::string space =
+      may_be_constant && random.chance(0.25) ? "p0" : spaces[sliding ? 0 : std::size_t(random.integer(0, 2))];
   const std::string pairing = sliding ? "sliding = \"large\"\n" : "";
   const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\n", result.friction, space);
   // Tilted, so that facets face each other where the bodies will meet.
   text += fmt::format("[[contact]]\ngroup = \"upper.bottom\"\nagainst = \"lower.top\"\nmultipliers_on = \"{}\"\n",
-                      sides[static_cast<std::size_t>(random.integer(0, 2))]) +
+                      sides[std::size_t(random.integer(0, 2))]) +
           pairing + law;
   if (on_floor) {
     text += "[obstacle.floor]\ntype = \"plane\"\npoint = " + vector_text(d, {0.0, 0.0, 0.0}) +

@@ -24,7 +24,7 @@ using namespace ricochet::bench;
 constexpr int repeats = 5, solves_per_repeat = 3;
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
 
@@ -86,7 +86,7 @@ void run(const std::string& path, int threads) {
              path, library_versions(), problem.dimension, matrix.cols(), problem.contact.size(), threads);
   fmt::print(
       R"("factor_mb": {:.5g}, "operations": {:.5g}, "ordering_s": {:.4g}, "residual": {:.2g}, "difference": {:.2g})",
-      1e-6 * static_cast<double>(own.factor_bytes()), own.predicted().operations, ordering,
+      1e-6 * double(own.factor_bytes()), own.predicted().operations, ordering,
       (matrix * one_result - right).norm() / right.norm(), (one_result - result).norm() / result.norm());
   one.print("one");
   several.print("several");

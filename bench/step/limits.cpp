@@ -30,10 +30,9 @@ std::size_t bytes_of_explicit_step(const SemidiscreteProblem& problem, std::size
   const SparseMatrix stiffness = problem.internal_force->tangent();
   const NodeMatrix blocks(stiffness, problem.dimension);
   std::size_t contact_entries = 2 * factor_entries;
-  for (const Index dof : problem.contact_dofs)
-    contact_entries += static_cast<std::size_t>(stiffness.col(dof).nonZeros());
+  for (const Index dof : problem.contact_dofs) contact_entries += std::size_t(stiffness.col(dof).nonZeros());
   constexpr std::size_t vectors = 9;
-  return blocks.bytes() + sizeof(double) * (contact_entries + vectors * static_cast<std::size_t>(problem.dof_count()));
+  return blocks.bytes() + sizeof(double) * (contact_entries + vectors * std::size_t(problem.dof_count()));
 }
 
 }  // namespace
@@ -42,10 +41,10 @@ MemoryReader::MemoryReader(std::size_t bytes) : values_(std::max<std::size_t>(by
 
 double MemoryReader::seconds() {
   const StepTimer timer;
-  const auto threads = static_cast<std::size_t>(thread_count());
+  const auto threads = std::size_t(thread_count());
   std::vector<double> sums(threads);
   parallel_items(thread_count(), [&](Index thread) {
-    const auto t = static_cast<std::size_t>(thread);
+    const auto t = std::size_t(thread);
     sums[t] = sum_of(values_.data() + values_.size() * t / threads, values_.size() / threads);
   });
   sink_ = sink_ + sums[0];

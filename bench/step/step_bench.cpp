@@ -41,7 +41,7 @@ struct Options {
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
 
@@ -49,12 +49,11 @@ double median(std::vector<double> values) {
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+  return double(usage.ru_maxrss) * 1024e-6;
 }
 
 double megabytes(const SparseMatrix& matrix) {
-  return 1e-6 * (static_cast<double>(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) +
-                 static_cast<double>(matrix.cols()) * sizeof(int));
+  return 1e-6 * (double(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) + double(matrix.cols()) * sizeof(int));
 }
 
 std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Scheme& scheme,
@@ -97,7 +96,7 @@ void print_phase(const std::string& name, const Phase& phase) {
   const double step = median(phase.step), library = median(phase.limits.library);
   fmt::print(R"(, "{}": {{"steps": {}, "active": {}, "step_ms": {:.5g}, "row_ms": {:.5g}, "iterations": {:.3g})", name,
              phase.step.size(), phase.most_active, 1e3 * step, 1e3 * median(phase.row),
-             static_cast<double>(phase.iterations) / static_cast<double>(phase.step.size()));
+             double(phase.iterations) / double(phase.step.size()));
   if (!phase.limits.memory.empty()) fmt::print(R"(, "memory_limit_ms": {:.5g})", 1e3 * median(phase.limits.memory));
   if (library > 0.0) {
     fmt::print(R"(, "library_solve_ms": {:.5g}, "own_solve_ms": {:.5g}, "ratio": {:.4g})", 1e3 * library,
@@ -121,8 +120,7 @@ double run(const Options& options) {
   simulation.advance();
   const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;
-  if (options.compare)
-    limits = make_limits(model.problem, session.scheme(), static_cast<std::size_t>(simulation.factor_entries()));
+  if (options.compare) limits = make_limits(model.problem, session.scheme(), std::size_t(simulation.factor_entries()));
 
   std::map<std::string, Phase> phases;
   long before = 0;
@@ -134,7 +132,7 @@ double run(const Options& options) {
     const StepTimer row_timer;
     const std::vector<double>& row = recorder.row(simulation.state(), simulation.account());
     const double row_seconds = row_timer.seconds();
-    const auto active = static_cast<long>((simulation.state().forces.normal_reaction.array() > 0.0).count());
+    const auto active = long((simulation.state().forces.normal_reaction.array() > 0.0).count());
     force.push_back(simulation.state().forces.normal_reaction.sum());
     milliseconds.push_back(1e3 * step);
     Phase& phase = phases[phase_name(active, before)];
@@ -159,7 +157,7 @@ double run(const Options& options) {
       R"("read_s": {:.4g}, "assembly_s": {:.4g}, "start_s": {:.4g}, "factor_entries": {}, "matrices_mb": {:.4g}, )",
       build.read_mesh, build.assembly, start, simulation.factor_entries(), matrices);
   fmt::print(R"("pairing_s": {:.4g}, "peak_mb": {:.5g})", pairing, peak);
-  if (limits) fmt::print(R"(, "limit_mb": {:.5g})", 1e-6 * static_cast<double>(limits->bytes()));
+  if (limits) fmt::print(R"(, "limit_mb": {:.5g})", 1e-6 * double(limits->bytes()));
   double worst = 0.0;
   for (const auto& [name, phase] : phases) {
     if (phase.step.empty()) continue;

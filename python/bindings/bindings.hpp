@@ -80,8 +80,8 @@ template <class Container>
 /// Returns the statuses as integers.
 [[nodiscard]] inline py::array_t<int> numbers_of(const std::vector<ContactStatus>& status) {
   std::vector<int> numbers;
-  for (const ContactStatus one : status) numbers.push_back(static_cast<int>(one));
-  const auto count = static_cast<Index>(numbers.size());
+  for (const ContactStatus one : status) numbers.push_back(int(one));
+  const auto count = Index(numbers.size());
   return owned_array(std::move(numbers), count);
 }
 

@@ -64,7 +64,7 @@ py::dict solve(OpenSolver& open, const Numbers& offset, double tolerance, int it
   }
   const ContactSolution& found = open.solution;
   py::dict result;
-  const auto points = static_cast<Index>(found.status.size());
+  const auto points = Index(found.status.size());
   const Index rows = found.reaction.size() / std::max<Index>(points, 1);
   result["reaction"] = owned_array(Vector(found.reaction), points, rows);
   result["motion"] = owned_array(Vector(found.motion), points, rows);

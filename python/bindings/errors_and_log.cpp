@@ -32,7 +32,7 @@ void hand_to_python(log::Level level, const std::string& message) {
   if (Py_IsInitialized() == 0) return;
   const py::gil_scoped_acquire lock;
   try {
-    function("ricochet.messages", "from_core")(static_cast<int>(level), readable(message));
+    function("ricochet.messages", "from_core")(int(level), readable(message));
   } catch (py::error_already_set& problem) {
     // Ctrl-C while a handler writes: the check after the step must see it.
     if (problem.matches(PyExc_KeyboardInterrupt))

@@ -83,7 +83,7 @@ py::tuple surface_of(const RunData& run, Index most) {
     const LibraryLock lock;
     surface = make_surface(results.nodes(), results.cells(), most);
   }
-  const auto nodes = static_cast<Index>(surface.nodes.size());
+  const auto nodes = Index(surface.nodes.size());
   const Index triangles = surface.count();
   return py::make_tuple(owned_array(std::move(surface.nodes), nodes),
                         owned_array(std::move(surface.corners), triangles, 3),
@@ -98,8 +98,7 @@ py::object obstacles_of(const RunData& run, std::size_t frame) {
   std::vector<int> cells = shown.cells;
   std::vector<double> positions = shown.positions;
   std::vector<int> obstacle = shown.obstacle;
-  const auto count = static_cast<Index>(cells.size()) / shown.corners,
-             points = static_cast<Index>(positions.size()) / 3;
+  const auto count = Index(cells.size()) / shown.corners, points = Index(positions.size()) / 3;
   return py::make_tuple(owned_array(std::move(cells), count, shown.corners),
                         owned_array(std::move(positions), points, 3), owned_array(std::move(obstacle), count));
 }
@@ -128,12 +127,12 @@ void bind_run(py::module_& module) {
       .def("column",
            [](const py::object& self, const std::string& name) {
              const std::vector<double>& values = self.cast<const RunData&>().column(name);
-             return view(values.data(), static_cast<Index>(values.size()), 0, self);
+             return view(values.data(), Index(values.size()), 0, self);
            })
       .def("times_of",
            [](const py::object& self, const std::string& name) {
              const std::vector<double>& times = self.cast<const RunData&>().times_of(name);
-             return view(times.data(), static_cast<Index>(times.size()), 0, self);
+             return view(times.data(), Index(times.size()), 0, self);
            })
       .def_property_readonly(
           "frame_times",

@@ -283,8 +283,8 @@ void bind_problem(Class& session) {
           [](OpenSession& open) {
             (void)open.problem();
             std::vector<Index> numbers = open.session.model().space.number;
-            numbers.resize(static_cast<std::size_t>(nodes_of(open.session.problem())));
-            const auto count = static_cast<Index>(numbers.size());
+            numbers.resize(std::size_t(nodes_of(open.session.problem())));
+            const auto count = Index(numbers.size());
             return owned_array(std::move(numbers), count);
           },
           "Numbers of the nodes in the mesh.")

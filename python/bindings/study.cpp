@@ -27,7 +27,7 @@ py::tuple conduct(const std::string& directory, const std::string& case_path, co
   asked.order_key = questions["order"].cast<std::string>();
   SignalCheck signals;
   StudyOptions options;
-  options.jobs = jobs > 0 ? jobs : std::max<std::size_t>(1, usable_cores() / static_cast<std::size_t>(threads));
+  options.jobs = jobs > 0 ? jobs : std::max<std::size_t>(1, usable_cores() / std::size_t(threads));
   options.threads = threads;
   options.resume = resume;
   options.force = force;

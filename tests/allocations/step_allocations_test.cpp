@@ -176,7 +176,7 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       EXPECT_EQ(apart.allocating, 0) << where;
       if (!GetParam().is_steady) continue;
       EXPECT_GT(in_contact.steps, 50) << where;
-      EXPECT_LE(static_cast<double>(in_contact.allocating), 0.2 * static_cast<double>(in_contact.steps)) << where;
+      EXPECT_LE(double(in_contact.allocating), 0.2 * double(in_contact.steps)) << where;
     }
   }
   set_thread_count(1);

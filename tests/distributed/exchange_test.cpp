@@ -30,8 +30,8 @@ Mesh box() {
 std::vector<std::vector<std::int64_t>> nodes_of_ranks(const Mesh& mesh, const std::vector<int>& rank_of_cell) {
   std::vector<std::set<std::int64_t>> nodes(static_cast<std::size_t>(world().size()));
   each_cell(mesh.cells, [&](Index number, std::span<const Index> of_cell) {
-    const int rank = rank_of_cell[static_cast<std::size_t>(number)];
-    nodes[static_cast<std::size_t>(rank)].insert(of_cell.begin(), of_cell.end());
+    const int rank = rank_of_cell[std::size_t(number)];
+    nodes[std::size_t(rank)].insert(of_cell.begin(), of_cell.end());
   });
   std::vector<std::vector<std::int64_t>> result;
   for (const auto& own : nodes) result.emplace_back(own.begin(), own.end());
@@ -40,8 +40,7 @@ std::vector<std::vector<std::int64_t>> nodes_of_ranks(const Mesh& mesh, const st
 
 /// Contribution of a rank to a component of a node: numbers whose sum depends on the order of the additions.
 double part_of(int rank, std::int64_t node, Index component) {
-  return std::sin(1.0 + 3.7 * rank + 0.9 * static_cast<double>(node) + static_cast<double>(component)) *
-         std::pow(10.0, rank % 3);
+  return std::sin(1.0 + 3.7 * rank + 0.9 * double(node) + double(component)) * std::pow(10.0, rank % 3);
 }
 
 class Exchange : public testing::TestWithParam<PartitionMethod> {
@@ -50,11 +49,9 @@ class Exchange : public testing::TestWithParam<PartitionMethod> {
       : mesh_(box()),
         division_(partition_cells(mesh_, world().size(), GetParam(), 5)),
         nodes_(nodes_of_ranks(mesh_, division_)) {}
-  [[nodiscard]] const std::vector<std::int64_t>& own() const {
-    return nodes_[static_cast<std::size_t>(world().rank())];
-  }
+  [[nodiscard]] const std::vector<std::int64_t>& own() const { return nodes_[std::size_t(world().rank())]; }
   [[nodiscard]] bool has(int rank, std::int64_t node) const {
-    const auto& nodes = nodes_[static_cast<std::size_t>(rank)];
+    const auto& nodes = nodes_[std::size_t(rank)];
     return std::ranges::binary_search(nodes, node);
   }
 
@@ -69,7 +66,7 @@ TEST_P(Exchange, SumsThePartsOfSharersInTheirOrder) {
     Vector values(static_cast<Index>(own().size()) * per_node), expected = values;
     for (std::size_t i = 0; i < own().size(); ++i) {
       for (Index k = 0; k < per_node; ++k) {
-        const Index at = static_cast<Index>(i) * per_node + k;
+        const Index at = Index(i) * per_node + k;
         values[at] = part_of(world().rank(), own()[i], k);
         expected[at] = 0.0;
         for (int rank = 0; rank < world().size(); ++rank) {
@@ -84,25 +81,25 @@ TEST_P(Exchange, SumsThePartsOfSharersInTheirOrder) {
 
 TEST_P(Exchange, EachNodeHasOneOwnerWhoseValuesSpread) {
   const NodeExchange exchange(world(), own(), mesh_.node_count());
-  Vector values = Vector::Constant(static_cast<Index>(own().size()) * 3, world().rank());
+  Vector values = Vector::Constant(Index(own().size()) * 3, world().rank());
   exchange.copy_from_owners(values);
   Index owned = 0;
   for (std::size_t i = 0; i < own().size(); ++i) {
     int owner = 0;
     while (!has(owner, own()[i])) ++owner;
-    EXPECT_EQ(exchange.is_owned(static_cast<Index>(i)), owner == world().rank());
-    EXPECT_EQ(values[static_cast<Index>(i) * 3 + 1], owner);
+    EXPECT_EQ(exchange.is_owned(Index(i)), owner == world().rank());
+    EXPECT_EQ(values[Index(i) * 3 + 1], owner);
     owned += owner == world().rank() ? 1 : 0;
   }
   EXPECT_EQ(exchange.owned_count(), owned);
   const MpiRanks ranks(world(), exchange);
-  EXPECT_EQ(ranks.sum(static_cast<double>(owned)), static_cast<double>(mesh_.node_count()));
+  EXPECT_EQ(ranks.sum(double(owned)), double(mesh_.node_count()));
 }
 
 TEST_P(Exchange, CountsWhatItSends) {
   const NodeExchange exchange(world(), own(), mesh_.node_count());
   EXPECT_EQ(exchange.traffic().messages, 0);
-  Vector values = Vector::Zero(static_cast<Index>(own().size()) * 3);
+  Vector values = Vector::Zero(Index(own().size()) * 3);
   exchange.accumulate(values);
   std::int64_t neighbours = 0, shared = 0;
   for (int rank = 0; rank < world().size(); ++rank) {
@@ -140,9 +137,9 @@ TEST(Partition, GivesPartsOfOneSizeWithShortBoundaries) {
   for (const int parts : {2, 3, 8}) {
     const std::vector<int> division = partition_cells(mesh, parts, PartitionMethod::graph);
     std::vector<Index> count(static_cast<std::size_t>(parts), 0);
-    for (const int part : division) ++count.at(static_cast<std::size_t>(part));
-    const double mean = static_cast<double>(mesh.cell_count()) / parts;
-    for (const Index cells : count) EXPECT_NEAR(static_cast<double>(cells), mean, 0.15 * mean) << parts;
+    for (const int part : division) ++count.at(std::size_t(part));
+    const double mean = double(mesh.cell_count()) / parts;
+    for (const Index cells : count) EXPECT_NEAR(double(cells), mean, 0.15 * mean) << parts;
     EXPECT_EQ(division, partition_cells(mesh, parts, PartitionMethod::graph)) << "the same each time";
   }
 }
@@ -152,7 +149,7 @@ TEST(Partition, LeavesNobodyWithoutCells) {
   for (const PartitionMethod method : {PartitionMethod::graph, PartitionMethod::random}) {
     for (int parts = 1; parts <= mesh.cell_count(); ++parts) {
       const std::vector<int> division = partition_cells(mesh, parts, method, 3);
-      EXPECT_EQ(std::set<int>(division.begin(), division.end()).size(), static_cast<std::size_t>(parts));
+      EXPECT_EQ(std::set<int>(division.begin(), division.end()).size(), std::size_t(parts));
     }
   }
 }

@@ -25,30 +25,30 @@ class Pieces : public CutBody, public testing::TestWithParam<Variant> {
     return assemble_stiffness(body, graph) + 300.0 * mass;
   }
   [[nodiscard]] static Vector some(Index size) {
-    return Vector::NullaryExpr(size, [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
+    return Vector::NullaryExpr(size, [](Index i) { return std::sin(0.9 * double(i * i % 1013)); });
   }
 };
 
 TEST_P(Pieces, AreTheWhole) {
   const Mesh& mesh = whole_->mesh;
-  EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.cell_count())), mesh.cell_count());
-  EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.facet_count())), mesh.facet_count());
+  EXPECT_EQ(ranks_.sum(double(piece_.mesh.cell_count())), mesh.cell_count());
+  EXPECT_EQ(ranks_.sum(double(piece_.mesh.facet_count())), mesh.facet_count());
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
     EXPECT_EQ(piece_.mesh.groups[g].name, mesh.groups[g].name);
-    EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.groups[g].members.size())), mesh.groups[g].members.size());
+    EXPECT_EQ(ranks_.sum(double(piece_.mesh.groups[g].members.size())), mesh.groups[g].members.size());
   }
   // Nodes keep their positions and the numbers of the file.
   for (std::size_t i = 0; i < piece_.node_number.size(); ++i) {
-    const auto node = static_cast<Index>(i);
+    const auto node = Index(i);
     EXPECT_EQ(piece_.space.nodes.col(node), whole_->space.nodes.col(piece_.node_number[i]));
-    EXPECT_EQ(piece_.space.number[i], whole_->space.number[static_cast<std::size_t>(piece_.node_number[i])]);
+    EXPECT_EQ(piece_.space.number[i], whole_->space.number[std::size_t(piece_.node_number[i])]);
   }
   // Elements keep their tags, their nodes and their positions in mesh and space.
   for (std::size_t i = 0; i < piece_.cell_number.size(); ++i) {
-    const IndexInBlocks here = locate_in_blocks(piece_.mesh.cells, static_cast<Index>(i));
+    const IndexInBlocks here = locate_in_blocks(piece_.mesh.cells, Index(i));
     const IndexInBlocks there = locate_in_blocks(mesh.cells, piece_.cell_number[i]);
     const CellBlock &own = piece_.mesh.cells[here.block], &all = mesh.cells[there.block];
-    EXPECT_EQ(own.tags[static_cast<std::size_t>(here.local)], all.tags[static_cast<std::size_t>(there.local)]);
+    EXPECT_EQ(own.tags[std::size_t(here.local)], all.tags[std::size_t(there.local)]);
     for (int k = 0; k < own.nodes_per_cell; ++k)
       EXPECT_EQ(piece_.mesh.nodes.col(own.cell(here.local)[k]), mesh.nodes.col(all.cell(there.local)[k]));
   }
@@ -60,7 +60,7 @@ TEST_P(Pieces, GroupsHaveTheirElements) {
     ASSERT_NE(whole, nullptr);
     const bool of_cells = group.dimension == whole_->mesh.dimension;
     for (const Index member : group.members) {
-      const Index number = (of_cells ? piece_.cell_number : piece_.facet_number)[static_cast<std::size_t>(member)];
+      const Index number = (of_cells ? piece_.cell_number : piece_.facet_number)[std::size_t(member)];
       EXPECT_TRUE(std::ranges::binary_search(whole->members, number));
     }
   }
@@ -88,7 +88,7 @@ TEST_P(Pieces, HavePreconditionersOfTheWhole) {
     for (int k = 0; k < d_; ++k) solved.push_back((node * d_ + k) % 11 == 3 ? 0 : 1);
   }
   const auto mask = [&](Vector& values) {
-    for (Index dof = 0; dof < values.size(); ++dof) values[dof] *= solved[static_cast<std::size_t>(dof)];
+    for (Index dof = 0; dof < values.size(); ++dof) values[dof] *= solved[std::size_t(dof)];
   };
   const NodeMatrix matrix(part, d_);
   const auto product = [&](const Vector& x, Vector& y) {
@@ -133,14 +133,13 @@ TEST_P(Pieces, ArePreconditionedInAnyUnits) {
     for (int k = 0; k < d_; ++k) solved.push_back((node * d_ + k) % 11 == 3 ? 0 : 1);
   }
   Vector force = part_of(some(whole_->space.node_count() * d_)), one, other;
-  for (Index dof = 0; dof < force.size(); ++dof) force[dof] *= solved[static_cast<std::size_t>(dof)];
+  for (Index dof = 0; dof < force.size(); ++dof) force[dof] *= solved[std::size_t(dof)];
   const auto maker = make_petsc_preconditioners();
   for (const char* const kind : {"gamg", "boomeramg", "mumps"}) {
     maker->make(kind, part, solved, piece_.space.nodes, ranks_)->apply(force, one);
     for (const double unit : {std::ldexp(1.0, -30), std::ldexp(1.0, 30)}) {
       maker->make(kind, unit * part, solved, piece_.space.nodes, ranks_)->apply(force, other);
-      for (Index dof = 0; dof < force.size(); ++dof)
-        other[dof] *= solved[static_cast<std::size_t>(dof)] != 0 ? unit : 1.0;
+      for (Index dof = 0; dof < force.size(); ++dof) other[dof] *= solved[std::size_t(dof)] != 0 ? unit : 1.0;
       // PETSc estimates eigenvalues for its smoothers, which changes 2e-7. A one on these diagonals changes 0.02 and
       // more.
       EXPECT_LT((other - one).lpNorm<Eigen::Infinity>(), 1e-4 * one.lpNorm<Eigen::Infinity>()) << kind << unit;
@@ -162,10 +161,10 @@ TEST_P(Pieces, AreSolvedAsTheWhole) {
   std::vector<char> whole_solved(static_cast<std::size_t>(whole.cols()), 1);
   for (std::size_t dof = 3; dof < whole_solved.size(); dof += 11) whole_solved[dof] = 0;
   Vector masked = force;
-  for (Index dof = 0; dof < force.size(); ++dof) masked[dof] *= whole_solved[static_cast<std::size_t>(dof)];
+  for (Index dof = 0; dof < force.size(); ++dof) masked[dof] *= whole_solved[std::size_t(dof)];
   std::vector<char> solved;
   for (const std::int64_t node : piece_.node_number) {
-    for (int k = 0; k < d_; ++k) solved.push_back(whole_solved[static_cast<std::size_t>(node * d_ + k)]);
+    for (int k = 0; k < d_; ++k) solved.push_back(whole_solved[std::size_t(node * d_ + k)]);
   }
   const auto rounds = [](const NodeMatrix& matrix, const std::vector<char>& taken, const Vector& right, int d,
                          const Ranks& ranks) {
@@ -178,7 +177,7 @@ TEST_P(Pieces, AreSolvedAsTheWhole) {
     const auto product = [&](const Vector& a, Vector& b) {
       matrix.multiply(a, b);
       ranks.accumulate(b);
-      for (Index dof = 0; dof < b.size(); ++dof) b[dof] *= taken[static_cast<std::size_t>(dof)];
+      for (Index dof = 0; dof < b.size(); ++dof) b[dof] *= taken[std::size_t(dof)];
     };
     const double target = 1e-13 * gradients.norm(*blocks, residual);
     std::pair<int, int> iterations;

@@ -32,7 +32,7 @@ inline std::vector<BodyKind> all_body_kinds() {
 
 /// Makes two boxes along each axis; rings have an inner radius of 2.
 inline std::unique_ptr<MeshedBody> make_bent_body(const ElementKind& element, PlaneState plane) {
-  BoxMesh box = box_of(element.shape, std::vector<int>(static_cast<std::size_t>(element.dimension()), 2));
+  BoxMesh box = box_of(element.shape, std::vector<int>(std::size_t(element.dimension()), 2));
   box.geometry_degree = element.geometry_degree;
   if (box.geometry_degree == 2) box.map = bend_map();
   if (plane == PlaneState::axisymmetric) {

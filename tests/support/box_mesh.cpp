@@ -55,8 +55,7 @@ class Builder {
     mesh_.groups.push_back({"body", 1, dimension_, {}});
     for (int axis = 0; axis < dimension_; ++axis) {
       for (const char* end : {"0", "1"}) {
-        mesh_.groups.push_back(
-            {std::string(1, "xyz"[axis]) + end, static_cast<int>(mesh_.groups.size()) + 1, dimension_ - 1, {}});
+        mesh_.groups.push_back({std::string(1, "xyz"[axis]) + end, int(mesh_.groups.size()) + 1, dimension_ - 1, {}});
       }
     }
     mesh_.groups.push_back({"boundary", 99, dimension_ - 1, {}});
@@ -73,10 +72,10 @@ class Builder {
         }
       }
     }
-    mesh_.nodes.resize(dimension_, static_cast<Index>(positions_.size()));
+    mesh_.nodes.resize(dimension_, Index(positions_.size()));
     for (std::size_t node = 0; node < positions_.size(); ++node) {
-      mesh_.nodes.col(static_cast<Index>(node)) = box_.map ? box_.map(positions_[node]) : positions_[node];
-      mesh_.node_tags.push_back(static_cast<std::int64_t>(node) + 1);
+      mesh_.nodes.col(Index(node)) = box_.map ? box_.map(positions_[node]) : positions_[node];
+      mesh_.node_tags.push_back(std::int64_t(node) + 1);
     }
     Index first = 0;
     for (const CellBlock& block : mesh_.facets) {
@@ -115,16 +114,16 @@ class Builder {
   void add_facet(const std::vector<LatticePoint>& vertices, const std::vector<Index>& nodes, std::size_t facet) {
     const auto& own = facet_nodes(box_.shape, 1)[facet];
     for (int axis = 0; axis < dimension_; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
+      const auto a = std::size_t(axis);
       for (const int end : {0, 1}) {
         const int wanted = 2 * end * box_.counts[a];
-        const auto there = [&](int v) { return vertices[static_cast<std::size_t>(v)][a] == wanted; };
+        const auto there = [&](int v) { return vertices[std::size_t(v)][a] == wanted; };
         if (!std::ranges::all_of(own, there)) continue;
         CellBlock& block = *find_block(facet_shape(box_.shape, facet));
-        for (const std::size_t group : {static_cast<std::size_t>(1 + 2 * axis + end), mesh_.groups.size() - 1})
+        for (const std::size_t group : {std::size_t(1 + 2 * axis + end), mesh_.groups.size() - 1})
           members_[block.shape].emplace_back(group, block.size());
         for (const int node : facet_nodes(box_.shape, box_.geometry_degree)[facet]) {
-          block.nodes.push_back(nodes[static_cast<std::size_t>(node)]);
+          block.nodes.push_back(nodes[std::size_t(node)]);
         }
         block.tags.push_back(1000000 + block.size());
       }
@@ -134,17 +133,17 @@ class Builder {
   Index node_between(const std::vector<LatticePoint>& vertices, const std::vector<int>& support) {
     LatticePoint sum{};
     for (const int v : support) {
-      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += vertices[static_cast<std::size_t>(v)][axis];
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += vertices[std::size_t(v)][axis];
     }
-    for (int& coordinate : sum) coordinate /= static_cast<int>(support.size());
+    for (int& coordinate : sum) coordinate /= int(support.size());
     if (support.size() == 1) return number(sum, [&] { return distorted(sum); });
     return number(sum, [&] {
       Vector mean = Vector::Zero(dimension_);
       for (const int v : support) {
-        const LatticePoint& at = vertices[static_cast<std::size_t>(v)];
-        mean += positions_[static_cast<std::size_t>(number(at, [&] { return distorted(at); }))];
+        const LatticePoint& at = vertices[std::size_t(v)];
+        mean += positions_[std::size_t(number(at, [&] { return distorted(at); }))];
       }
-      return Vector(mean / static_cast<double>(support.size()));
+      return Vector(mean / double(support.size()));
     });
   }
 
@@ -153,7 +152,7 @@ class Builder {
     const auto found = numbers_.find(place);
     if (found != numbers_.end()) return found->second;
     const Vector at = position();  // may number vertices itself
-    const auto index = static_cast<Index>(positions_.size());
+    const auto index = Index(positions_.size());
     numbers_[place] = index;
     positions_.push_back(at);
     return index;
@@ -162,9 +161,9 @@ class Builder {
   Vector distorted(const LatticePoint& place) {
     Vector at(dimension_);
     for (int axis = 0; axis < dimension_; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
+      const auto a = std::size_t(axis);
       const double width = 1.0 / box_.counts[a];
-      const double random = static_cast<double>(random_()) / 2147483648.0 - 1.0;
+      const double random = double(random_()) / 2147483648.0 - 1.0;
       const bool on_side = place[a] == 0 || place[a] == 2 * box_.counts[a];
       at[axis] = 0.5 * width * place[a] + (on_side ? 0.0 : box_.distortion * width * random);
     }
@@ -256,11 +255,8 @@ std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree,
   auto test = std::make_unique<MeshedBody>();
   test->mesh = std::move(mesh);
   test->space = make_displacement_space(test->mesh, displacement_degree);
-  test->body = Body{&test->mesh,
-                    &test->space,
-                    plane,
-                    {test_material()},
-                    std::vector<int>(static_cast<std::size_t>(test->mesh.cell_count()), 0)};
+  test->body = Body{
+      &test->mesh, &test->space, plane, {test_material()}, std::vector<int>(std::size_t(test->mesh.cell_count()), 0)};
   return test;
 }
 
@@ -282,7 +278,7 @@ double integrate(const MeshedBody& test, int degree, const std::function<double(
       Matrix corners(d, block.nodes_per_cell);
       for (int k = 0; k < block.nodes_per_cell; ++k) corners.col(k) = test.mesh.nodes.col(block.cell(cell)[k]);
       for (Index q = 0; q < rule.weights.size(); ++q) {
-        const Matrix jacobian = corners * map.gradients[static_cast<std::size_t>(q)];
+        const Matrix jacobian = corners * map.gradients[std::size_t(q)];
         sum += rule.weights[q] * jacobian.determinant() * value(corners * map.values.col(q));
       }
     }

@@ -37,7 +37,7 @@ Matrix random_operator(Index size, double digits, std::mt19937& random) {
   const Matrix basis = Eigen::HouseholderQR<Matrix>(square).householderQ();
   Vector values(size);
   for (Index i = 0; i < size; ++i)
-    values[i] = std::pow(10.0, -digits * static_cast<double>(i) / static_cast<double>(std::max<Index>(size - 1, 1)));
+    values[i] = std::pow(10.0, -digits * double(i) / double(std::max<Index>(size - 1, 1)));
   Matrix w = basis * values.asDiagonal() * basis.transpose();
   w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
   return w;
@@ -54,11 +54,10 @@ FrictionProblem random_problem(Index points, Index dimension, double friction, u
 }
 
 FrictionProblem half_space_problem(Index side, double friction) {
-  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(side * side), 3), friction);
-  const double spacing = 1.0 / static_cast<double>(side);
+  FrictionProblem problem(std::vector<Index>(std::size_t(side * side), 3), friction);
+  const double spacing = 1.0 / double(side);
   const auto place = [&](Index i) -> Eigen::Vector2d {
-    return {(0.5 + static_cast<double>(i % side)) * spacing - 0.5,
-            (0.5 + static_cast<double>(i / side)) * spacing - 0.5};
+    return {(0.5 + double(i % side)) * spacing - 0.5, (0.5 + double(i / side)) * spacing - 0.5};
   };
   for (Index i = 0; i < side * side; ++i) {
     for (Index j = 0; j < side * side; ++j) {
@@ -102,7 +101,7 @@ void expect_law(const FrictionProblem& problem, const ContactSolution& solution,
   const Vector size = problem.q.cwiseAbs() + problem.w.cwiseAbs() * rho.cwiseAbs();
   for (Index i = 0; i < problem.points(); ++i) {
     SCOPED_TRACE(testing::Message() << "point " << i);
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     const Index row = problem.row_offset[at];
     const Index tangents = problem.row_offset[at + 1] - row - 1;
     const ContactStatus status = solution.status[at];

@@ -22,7 +22,7 @@ struct FrictionProblem {
 
   /// Makes points of these sizes; the caller fills in W and q.
   FrictionProblem(const std::vector<Index>& sizes, double friction);
-  [[nodiscard]] Index points() const { return static_cast<Index>(row_offset.size()) - 1; }
+  [[nodiscard]] Index points() const { return Index(row_offset.size()) - 1; }
   /// Returns the problem in the solvers' format, with this operator or one of its own.
   [[nodiscard]] ContactProblem contact(std::shared_ptr<const ContactOperator> contact_operator = nullptr) const;
 };

@@ -116,11 +116,11 @@ struct Raw {
     for (const std::string& group : groups) make(group + "/");
     for (const auto& [name, values] : integers) {
       make(name);
-      file.integers(name, values.data(), static_cast<Index>(values.size()));
+      file.integers(name, values.data(), Index(values.size()));
     }
     for (const auto& [name, values] : reals) {
       make(name);
-      file.reals(name, values.data(), static_cast<Index>(values.size()));
+      file.reals(name, values.data(), Index(values.size()));
     }
     for (const auto& [name, value] : texts) {
       make(name);

@@ -15,7 +15,7 @@ SparseMatrix grid_matrix(int dimension, int side, int components, unsigned seed)
   int nodes = 1;
   for (int d = 0; d < dimension; ++d) nodes *= side;
   std::vector<Eigen::Triplet<double>> entries;
-  Vector diagonal = Vector::Zero(static_cast<Index>(nodes) * components);
+  Vector diagonal = Vector::Zero(Index(nodes) * components);
   const auto couple = [&](int a, int b) {
     for (int i = 0; i < components; ++i) {
       for (int j = 0; j < components; ++j) {
@@ -40,8 +40,7 @@ SparseMatrix grid_matrix(int dimension, int side, int components, unsigned seed)
       if (inside && other > node) couple(node, other);
     }
   }
-  for (Index i = 0; i < diagonal.size(); ++i)
-    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.01 * diagonal[i] + 0.1);
+  for (Index i = 0; i < diagonal.size(); ++i) entries.emplace_back(int(i), int(i), 1.01 * diagonal[i] + 0.1);
   SparseMatrix matrix(diagonal.size(), diagonal.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

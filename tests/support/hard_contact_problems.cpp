@@ -25,16 +25,16 @@ Eigen::Vector3<long double> project_long(long double friction, const Eigen::Vect
 
 Matrix rigid_trace(const std::vector<RigidPoint>& points, Index dimension) {
   const std::vector<Index> plane{0, 2, 4};
-  const auto count = static_cast<Index>(points.size());
+  const auto count = Index(points.size());
   Matrix trace(dimension * count, dimension == 2 ? 3 : 6);
   for (Index i = 0; i < count; ++i) {
-    const auto& [place, normal] = points[static_cast<std::size_t>(i)];
+    const auto& [place, normal] = points[std::size_t(i)];
     // An axis not parallel to the normal; in two dimensions the tangent lies in the plane.
     const Eigen::Vector3d across = std::abs(normal.y()) < 0.9 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
     const Eigen::Vector3d first = across.cross(normal).normalized(), second = normal.cross(first);
     const std::array<Eigen::Vector3d, 3> axes{normal, first, second};
     for (Index k = 0; k < dimension; ++k) {
-      const Eigen::Vector3d& axis = axes[static_cast<std::size_t>(k)];
+      const Eigen::Vector3d& axis = axes[std::size_t(k)];
       Eigen::Matrix<double, 1, 6> row;
       row << axis.transpose(), place.cross(axis).transpose();
       if (dimension == 2) {
@@ -65,11 +65,9 @@ FrictionProblem rigid_problem(const std::vector<RigidPoint>& points, const Eigen
 FrictionProblem rigid_box(Index points, Index dimension, double friction, unsigned seed) {
   std::mt19937 random(seed);
   const Eigen::Vector3d sides(1.0, 0.7, 0.2 + 0.8 * std::abs(uniform(random)));
-  const Index along = dimension == 2 ? points : static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(points))));
+  const Index along = dimension == 2 ? points : Index(std::ceil(std::sqrt(double(points))));
   const Index across = dimension == 2 ? 1 : (points + along - 1) / along;
-  const auto on_grid = [](Index i, Index count) {
-    return count > 1 ? 2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1.0 : 0.0;
-  };
+  const auto on_grid = [](Index i, Index count) { return count > 1 ? 2.0 * double(i) / double(count - 1) - 1.0 : 0.0; };
   std::vector<RigidPoint> places;
   for (Index i = 0; i < points; ++i) {
     const double x = seed % 2 == 0 ? on_grid(i % along, along) : uniform(random);
@@ -87,8 +85,7 @@ FrictionProblem wedged_body(Index points, Index dimension, double friction, doub
   std::vector<RigidPoint> places;
   for (Index i = 0; i < points; ++i) {
     const bool funnel = dimension == 3 && seed % 2 == 1;
-    const double turn = funnel ? 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(points)
-                               : std::numbers::pi * static_cast<double>(i % 2);
+    const double turn = funnel ? 2.0 * std::numbers::pi * double(i) / double(points) : std::numbers::pi * double(i % 2);
     const Eigen::Vector3d outward(std::cos(turn), std::sin(turn), 0.0);
     Eigen::Vector3d normal = -std::cos(angle) * outward;
     normal.z() += std::sin(angle);
@@ -104,8 +101,7 @@ FrictionProblem wedged_body(Index points, Index dimension, double friction, doub
   const double compliance = softness * problem.w.diagonal().mean();
   for (Index i = 0; i < points; ++i) {
     for (Index j = 0; j < points; ++j) {
-      const Eigen::Vector3d apart =
-          places[static_cast<std::size_t>(i)].position - places[static_cast<std::size_t>(j)].position;
+      const Eigen::Vector3d apart = places[std::size_t(i)].position - places[std::size_t(j)].position;
       problem.w.block(dimension * i, dimension * j, dimension, dimension).diagonal().array() +=
           compliance * std::exp(-8.0 * apart.norm());
     }
@@ -130,19 +126,18 @@ Vector decades_of(Index points, Index dimension, double decades, Index per_body,
   const Index bodies = (points + per_body - 1) / per_body;
   std::vector<double> factors;
   for (Index k = 0; k < bodies; ++k)
-    factors.push_back(
-        std::pow(10.0, -decades * static_cast<double>(k) / static_cast<double>(std::max<Index>(bodies - 1, 1))));
+    factors.push_back(std::pow(10.0, -decades * double(k) / double(std::max<Index>(bodies - 1, 1))));
   for (std::size_t k = factors.size(); k > 1; --k) std::swap(factors[k - 1], factors[random() % k]);
   Vector result(dimension * points);
   for (Index i = 0; i < points; ++i)
-    result.segment(dimension * i, dimension).setConstant(factors[static_cast<std::size_t>(i / per_body)]);
+    result.segment(dimension * i, dimension).setConstant(factors[std::size_t(i / per_body)]);
   return result;
 }
 
 FrictionProblem unequal_bodies(Index points, Index dimension, double friction, double decades, double power,
                                unsigned seed) {
   std::mt19937 random(seed);
-  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), dimension), friction);
+  FrictionProblem problem(std::vector<Index>(std::size_t(points), dimension), friction);
   const Index rows = dimension * points;
   problem.w = 0.05 * random_operator(rows, 1.0, random);
   for (Index i = 0; i < points; i += 5) {
@@ -208,8 +203,8 @@ Judgement judge(const ContactProblem& problem, const Vector& reaction) {
   Long data = 0, residual = 0, beyond = 0, own = 0, outside = 0;
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
-    const Index rows = problem.row_offset[static_cast<std::size_t>(i) + 1] - row;
+    const Index row = problem.row_offset[std::size_t(i)];
+    const Index rows = problem.row_offset[std::size_t(i) + 1] - row;
     const Long friction = rows > 1 ? Long(problem.friction_coefficient[i]) : Long(0);
     const Index count = friction > 0 ? rows : 1;
     const Long w = problem.contact_operator->block(row, count).diagonal().cast<Long>().mean();
@@ -238,8 +233,7 @@ Judgement judge(const ContactProblem& problem, const Vector& reaction) {
     if (!(r.norm() < std::numeric_limits<double>::infinity())) residual = std::numeric_limits<Long>::infinity();
   }
   if (data == 0) data = 1;
-  return {static_cast<double>(residual / data), static_cast<double>(beyond / data), static_cast<double>(own),
-          static_cast<double>(outside)};
+  return {double(residual / data), double(beyond / data), double(own), double(outside)};
 }
 
 }  // namespace ricochet::test_support

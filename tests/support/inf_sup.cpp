@@ -28,15 +28,15 @@ SparseMatrix norm_matrix(const Body& body, const std::function<bool(Index)>& is_
   const SparseMatrix mass = assemble_scalar_mass(scalar, graph);
   const double length = extent(body.space->nodes);
   int count = 0;
-  number.assign(static_cast<std::size_t>(body.space->node_count()), -1);
+  number.assign(std::size_t(body.space->node_count()), -1);
   for (Index node = 0; node < body.space->node_count(); ++node) {
-    if (!is_held || !is_held(node)) number[static_cast<std::size_t>(node)] = count++;
+    if (!is_held || !is_held(node)) number[std::size_t(node)] = count++;
   }
   const int d = body.space->dimension;
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Index row, Index column, double value) {
-    const int i = number[static_cast<std::size_t>(row)];
-    const int j = number[static_cast<std::size_t>(column)];
+    const int i = number[std::size_t(row)];
+    const int j = number[std::size_t(column)];
     if (i >= 0 && j >= 0) entries.emplace_back(i, j, value);
   };
   for (Index column = 0; column < body.space->node_count(); ++column) {
@@ -80,13 +80,13 @@ void boundary_products(const MultiplierSpace& space, const std::vector<int>& unk
       const auto row = number.find(functions.anchors[a]);
       if (row == number.end()) continue;
       for (Index j = 0; j < quadrature.node_count(); ++j) {
-        const int at = unknown[static_cast<std::size_t>(quadrature.nodes[j])];
-        if (at >= 0) coupling(at, row->second) += with_displacement(static_cast<Index>(a), j);
+        const int at = unknown[std::size_t(quadrature.nodes[j])];
+        if (at >= 0) coupling(at, row->second) += with_displacement(Index(a), j);
       }
       for (std::size_t b = 0; b < functions.anchors.size(); ++b) {
         const auto column = number.find(functions.anchors[b]);
         if (column == number.end()) continue;
-        norm(row->second, column->second) += with_itself(static_cast<Index>(a), static_cast<Index>(b));
+        norm(row->second, column->second) += with_itself(Index(a), Index(b));
       }
     }
   }
@@ -102,7 +102,7 @@ double inf_sup_constant(const Body& body, const std::vector<Index>& facets, cons
   const SparseMatrix norm = norm_matrix(body, is_held, unknown);
   const std::map<Index, Index> number = number_multipliers(*space);
   if (number.empty()) return std::numeric_limits<double>::infinity();
-  const auto count = static_cast<Index>(number.size());
+  const auto count = Index(number.size());
   Matrix coupling = Matrix::Zero(norm.rows(), count);
   Matrix multiplier_norm = Matrix::Zero(count, count);
   boundary_products(*space, unknown, number, coupling, multiplier_norm);

@@ -90,7 +90,7 @@ AssembledBody::AssembledBody(const BodyDescription& description) {
   mesh = read_mesh(file);
   space = make_displacement_space(mesh, description.order);
   body = {&mesh, &space, PlaneState::strain, {{"body", 3.0, make_linear_elasticity(1.0, 1.0)}}, {}};
-  body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), 0);
+  body.cell_material.assign(std::size_t(mesh.cell_count()), 0);
   assemble(facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members));
 }
 

@@ -11,10 +11,9 @@ namespace ricochet::test_support {
 class MshText {
  public:
   /// `edge_groups` are the names of the groups of edges, numbered from 1; the cells are the last group, "body".
-  explicit MshText(const std::vector<std::string>& edge_groups) : body_(static_cast<int>(edge_groups.size()) + 1) {
+  explicit MshText(const std::vector<std::string>& edge_groups) : body_(int(edge_groups.size()) + 1) {
     head_ = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", body_);
-    for (int i = 1; i < body_; ++i)
-      head_ += fmt::format("1 {} \"{}\"\n", i, edge_groups[static_cast<std::size_t>(i) - 1]);
+    for (int i = 1; i < body_; ++i) head_ += fmt::format("1 {} \"{}\"\n", i, edge_groups[std::size_t(i) - 1]);
     head_ += fmt::format("2 {} \"body\"\n$EndPhysicalNames\n", body_);
   }
 

@@ -9,7 +9,7 @@
 namespace ricochet::test_support {
 
 std::string name_of(const PairOfBoxes& of) {
-  return fmt::format("shape {}, {}, degree {}", static_cast<int>(of.shape), of.multipliers, of.degree);
+  return fmt::format("shape {}, {}, degree {}", int(of.shape), of.multipliers, of.degree);
 }
 
 Vector gaps(const SemidiscreteProblem& problem, const Vector& displacement) {

@@ -22,7 +22,7 @@ inline void expect_same(const Snapshot& expected, const Snapshot& found) {
     }
     const auto& others = std::get<Vector>(other);
     ASSERT_EQ(reals->size(), others.size()) << name;
-    const auto bytes = sizeof(double) * static_cast<std::size_t>(reals->size());
+    const auto bytes = sizeof(double) * std::size_t(reals->size());
     EXPECT_TRUE(bytes == 0 || std::memcmp(reals->data(), others.data(), bytes) == 0) << name;
   }
 }

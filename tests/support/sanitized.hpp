@@ -19,7 +19,7 @@ constexpr unsigned seeds(unsigned count) {
 /// Returns it as well, or `count` times RICOCHET_RANDOM_CASES if that is set.
 inline unsigned samples(unsigned count) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
-  return factor != nullptr ? count * static_cast<unsigned>(std::atoi(factor)) : seeds(count);
+  return factor != nullptr ? count * unsigned(std::atoi(factor)) : seeds(count);
 }
 
 }  // namespace ricochet::test_support

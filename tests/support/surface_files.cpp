@@ -32,8 +32,8 @@ SurfaceFacets block_surface(const Vector3& low, const Vector3& high, int n) {
       const auto corner = [&](int i, int k) -> Vector3 {
         Vector3 part;
         part[axis] = at;
-        part[u] = static_cast<double>(i) / n;
-        part[v] = static_cast<double>(k) / n;
+        part[u] = double(i) / n;
+        part[v] = double(k) / n;
         return low + part.cwiseProduct(size);
       };
       for (int i = 0; i < n; ++i) {
@@ -79,12 +79,11 @@ SurfaceFacets sphere_surface(const Vector3& centre, double radius, int refinemen
 void write_binary_stl(const SurfaceFacets& facets, const std::string& file) {
   std::ofstream stream(file, std::ios::binary);
   stream << std::string(80, '\0');  // as many programs leave it
-  const auto count = static_cast<std::uint32_t>(facets.corners.size());
+  const auto count = std::uint32_t(facets.corners.size());
   stream.write(reinterpret_cast<const char*>(&count), sizeof count);
   for (const Triangle& triangle : facets.corners) {
     std::array<float, 12> numbers{};
-    for (std::size_t k = 0; k < 9; ++k)
-      numbers[3 + k] = static_cast<float>(triangle[k / 3][static_cast<Eigen::Index>(k % 3)]);
+    for (std::size_t k = 0; k < 9; ++k) numbers[3 + k] = float(triangle[k / 3][static_cast<Eigen::Index>(k % 3)]);
     stream.write(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
     stream.write("\0\0", 2);
   }

@@ -8,7 +8,7 @@
 namespace ricochet::test_support {
 
 [[nodiscard]] inline double uniform(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
+  return double(random()) / 2147483648.0 - 1.0;
 }
 
 [[nodiscard]] inline Vector uniform(Index size, std::mt19937& random) {

@@ -83,8 +83,7 @@ double distance(const Course& one, const Course& reference) {
   double worst = 0.0, size = 0.0;
   for (std::size_t i = 0; i < reference.time.size(); ++i) {
     size = std::max(size, std::abs(reference.corner[i]));
-    const auto after =
-        static_cast<std::size_t>(std::ranges::lower_bound(one.time, reference.time[i]) - one.time.begin());
+    const auto after = std::size_t(std::ranges::lower_bound(one.time, reference.time[i]) - one.time.begin());
     if (after == 0 || after >= one.time.size()) continue;
     const double part = (reference.time[i] - one.time[after - 1]) / (one.time[after] - one.time[after - 1]);
     const double here = (1.0 - part) * one.corner[after - 1] + part * one.corner[after];

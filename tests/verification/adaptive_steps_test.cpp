@@ -173,7 +173,7 @@ Bounces bounces(const std::vector<std::string>& changes) {
 /// Relative error of the height over time, in the L² norm.
 double error(const Bounces& run, const Bounces& reference) {
   const auto at = [](const Bounces& each, double time) {
-    const auto after = static_cast<std::size_t>(std::ranges::lower_bound(each.time, time) - each.time.begin());
+    const auto after = std::size_t(std::ranges::lower_bound(each.time, time) - each.time.begin());
     if (after == 0 || after >= each.time.size()) return each.height[std::min(after, each.height.size() - 1)];
     const double part = (time - each.time[after - 1]) / (each.time[after] - each.time[after - 1]);
     return (1.0 - part) * each.height[after - 1] + part * each.height[after];
@@ -198,7 +198,7 @@ TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
   for (const char* const step : {"time.step=8e-4", "time.step=4e-4", "time.step=2e-4", "time.step=1e-4"}) {
     const Bounces fixed = bounces(ball({step}));
     const double own = error(fixed, reference);
-    const auto steps = static_cast<double>(fixed.solves);
+    const auto steps = double(fixed.solves);
     if (own <= reached) {
       least = steps;
       if (error_before > reached)
@@ -209,7 +209,7 @@ TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
     error_before = own;
     steps_before = steps;
   }
-  EXPECT_LT(2.0 * static_cast<double>(adapted.solves), least) << "error " << reached;
+  EXPECT_LT(2.0 * double(adapted.solves), least) << "error " << reached;
   // The first contact is resolved: free fall from 5 mm takes √(2H/g).
   EXPECT_NEAR(adapted.first_touch, std::sqrt(2.0 * 0.005 / 9.81), 1.5e-3);
   EXPECT_LT(adapted.step_there, 2e-3);

@@ -227,7 +227,7 @@ std::vector<Errors> table(const Problem& problem, const std::vector<int>& cells,
 
 /// Mean observed order from the coarsest to the finest mesh.
 double mean_order(const std::vector<Errors>& all, double Errors::*part) {
-  return order(all.front().*part, all.back().*part) / static_cast<double>(all.size() - 1);
+  return order(all.front().*part, all.back().*part) / double(all.size() - 1);
 }
 
 /// Contacts begin within one step of the exact time on every mesh. They end when the tail of the dispersed release wave

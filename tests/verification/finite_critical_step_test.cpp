@@ -17,8 +17,7 @@ namespace ricochet::test_support::finite_critical_step_test {
 double dense_critical_step(const SemidiscreteProblem& problem, const Vector& displacement) {
   std::vector<Index> inside;
   for (Index dof = 0; dof < problem.dof_count(); ++dof) {
-    if (problem.is_massless[static_cast<std::size_t>(dof)] == 0 && !problem.supports.contains(dof))
-      inside.push_back(dof);
+    if (problem.is_massless[std::size_t(dof)] == 0 && !problem.supports.contains(dof)) inside.push_back(dof);
   }
   const Matrix stiffness = problem.internal_force->tangent(displacement);
   const Vector scale = Vector(problem.mass.diagonal())(inside).cwiseSqrt().cwiseInverse();

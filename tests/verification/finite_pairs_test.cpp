@@ -153,7 +153,7 @@ TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
     const Index nodes = run.problem().nodes.cols();
     Points result(2, nodes);
     for (Index node = 0; node < nodes; ++node)
-      result.col(run.model().space.number[static_cast<std::size_t>(node)]) =
+      result.col(run.model().space.number[std::size_t(node)]) =
           run.problem().nodes.col(node) + run.state().displacement.segment(2 * node, 2);
     return result;
   };

@@ -49,7 +49,7 @@ const std::vector<Law>& laws() {
 }
 
 std::string mesh_of(const ElementKind& kind, double distortion) {
-  BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
+  BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(kind.dimension()), 2));
   box.distortion = distortion;
   return write_mesh(fmt::format("{}-{}.msh", kind.label(), distortion), make_box_mesh(box));
 }

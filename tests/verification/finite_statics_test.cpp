@@ -118,7 +118,7 @@ TEST(FiniteStatics, ShearBetweenRigidPlates) {
   double top = 0.0, bottom = 0.0;
   const Vector& reaction = run.state().forces.support_reaction;
   for (Index i = 0; i < reaction.size(); ++i) {
-    const Index dof = run.problem().supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = run.problem().supports.dofs()[std::size_t(i)];
     if (dof % 3 != 0) continue;
     (run.problem().nodes(1, dof / 3) > 0.5 ? top : bottom) += reaction[i];
   }

@@ -36,8 +36,8 @@ class InflatedShell {
   /// The displacement r − R.
   [[nodiscard]] double displacement(double radius) const {
     const double at = std::clamp((radius - inner) / step(), 0.0, steps - 1e-9);
-    const auto k = static_cast<std::size_t>(at);
-    const double t = at - static_cast<double>(k), h = step();
+    const auto k = std::size_t(at);
+    const double t = at - double(k), h = step();
     const double a = place_[k], b = place_[k + 1], c = h * slope_[k], d = h * slope_[k + 1];
     return a + t * (c + t * (3.0 * (b - a) - 2.0 * c - d + t * (2.0 * (a - b) + c + d))) - radius;
   }

@@ -44,7 +44,7 @@ double mean_displacement(const CaseRun& run, int component) {
   double sum = 0.0;
   const Index nodes = run.problem().nodes.cols();
   for (Index node = 0; node < nodes; ++node) sum += run.state().displacement[2 * node + component];
-  return sum / static_cast<double>(nodes);
+  return sum / double(nodes);
 }
 
 double contact_force(const CaseRun& run, int component) {

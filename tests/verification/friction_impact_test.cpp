@@ -138,7 +138,7 @@ Throw throw_disc(double speed, std::vector<std::string> overrides) {
             const double beyond = std::abs(forces.tangential_reaction[i]) - 0.3 * forces.normal_reaction[i];
             result.most_per_point = std::max(result.most_per_point, beyond / largest);
           }
-          const ContactStatus status = run.state().contact_status[static_cast<std::size_t>(i)];
+          const ContactStatus status = run.state().contact_status[std::size_t(i)];
           stick += status == ContactStatus::stick ? 1 : 0;
           slip += status == ContactStatus::slip ? 1 : 0;
         }

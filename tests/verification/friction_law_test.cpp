@@ -77,7 +77,7 @@ void check_law(CaseRun& run, const Vector& increment, double coefficient, const 
     const double normal = state.forces.normal_reaction[i];
     const Vector friction = state.forces.tangential_reaction.segment(i * tangents, tangents);
     const Vector w = slip.segment(i * tangents, tangents);
-    const ContactStatus status = state.contact_status[static_cast<std::size_t>(i)];
+    const ContactStatus status = state.contact_status[std::size_t(i)];
     const bool grazes = bounds.size() > 0 && normal == 0.0 && status != ContactStatus::open;
     if (grazes) {
       EXPECT_LE(std::abs(y[i]), 1e-12 * slip_size);

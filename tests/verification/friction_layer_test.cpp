@@ -27,8 +27,8 @@ struct Layer {
     return (k - sliding) % 2 == 0 ? last : -last;
   }
   /// Number k* of phases in which the base slides.
-  [[nodiscard]] int phases() const { return static_cast<int>(std::ceil((1.0 / a - 1.0) / 2.0 - 1e-12)); }
-  [[nodiscard]] static int phase(double t) { return static_cast<int>(t / 2.0); }
+  [[nodiscard]] int phases() const { return int(std::ceil((1.0 / a - 1.0) / 2.0 - 1e-12)); }
+  [[nodiscard]] static int phase(double t) { return int(t / 2.0); }
   [[nodiscard]] double sticking_time() const { return 2.0 * phases(); }
   [[nodiscard]] double velocity(double t) const { return phase(t) < phases() ? arriving(phase(t)) - a : 0.0; }
   /// Traction of the base on the layer.
@@ -42,8 +42,8 @@ struct Layer {
 std::string column_mesh(double width, int cells) {
   MshText mesh({"base", "top", "sides"});
   for (int j = 0; j <= cells; ++j) {
-    mesh.add_node(0.0, static_cast<double>(j) / cells);
-    mesh.add_node(width, static_cast<double>(j) / cells);
+    mesh.add_node(0.0, double(j) / cells);
+    mesh.add_node(width, double(j) / cells);
   }
   mesh.add_edge(1, 1, 2);
   mesh.add_edge(2, 2 * cells + 1, 2 * cells + 2);
@@ -122,8 +122,8 @@ constexpr double width = 0.5;
 class PhaseMeans {
  public:
   void add(double t, double value) {
-    const auto phase = static_cast<std::size_t>(t / 2.0);
-    if (phase >= sums_.size() || std::abs(t - 2.0 * static_cast<double>(phase) - 1.0) > 0.5) return;
+    const auto phase = std::size_t(t / 2.0);
+    if (phase >= sums_.size() || std::abs(t - 2.0 * double(phase) - 1.0) > 0.5) return;
     sums_[phase] += value;
     counts_[phase] += 1.0;
   }
@@ -134,7 +134,7 @@ class PhaseMeans {
   }
 
  private:
-  std::vector<double> sums_ = std::vector<double>(static_cast<std::size_t>(end / 2.0));
+  std::vector<double> sums_ = std::vector<double>(std::size_t(end / 2.0));
   std::vector<double> counts_ = sums_;
 };
 
@@ -157,13 +157,13 @@ struct Base {
     const auto mean = [&](const Vector& field) {
       double sum = 0.0;
       for (const Index node : contact.nodes) sum += field[2 * node];
-      return sum / static_cast<double>(contact.nodes.size());
+      return sum / double(contact.nodes.size());
     };
     displacement = mean(run.state().displacement);
     velocity = mean(run.simulation().increment()) / run.scheme().step();
     const Vector& friction = run.state().forces.tangential_reaction;
     for (Index i = 0; i < contact.size(); ++i) {
-      traction -= contact.rows->tangents[static_cast<std::size_t>(i)](0, 0) * friction[i] / contact.weights.sum();
+      traction -= contact.rows->tangents[std::size_t(i)](0, 0) * friction[i] / contact.weights.sum();
     }
   }
 };
@@ -246,14 +246,14 @@ std::vector<Errors> table(const Layer& layer, const Method& method, const std::v
 }
 
 double mean_order(const std::vector<Errors>& all, double Errors::*part) {
-  return std::log2(std::abs(all.front().*part / all.back().*part)) / static_cast<double>(all.size() - 1);
+  return std::log2(std::abs(all.front().*part / all.back().*part)) / double(all.size() - 1);
 }
 
 /// The means over the middle of each phase, away from the fronts: velocities V − (1 + 2k) a, then none; traction −a,
 /// then alternating.
 void expect_phases(const Layer& layer, const Errors& e, double tolerance, const std::string& name) {
   for (std::size_t k = 0; k < e.mean_velocity.size(); ++k) {
-    const double t = 2.0 * static_cast<double>(k) + 1.0;
+    const double t = 2.0 * double(k) + 1.0;
     EXPECT_NEAR(e.mean_velocity[k], layer.velocity(t), tolerance) << name << ", phase " << k;
     EXPECT_NEAR(e.mean_traction[k], layer.traction(t), tolerance) << name << ", phase " << k;
   }

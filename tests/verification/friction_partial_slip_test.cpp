@@ -57,12 +57,12 @@ std::vector<ContactNode> contact_nodes(const CaseRun& run) {
   const ContactBoundary& contact = run.problem().contact;
   const StepForces& forces = run.state().forces;
   Vector along = forces.tangential_reaction;
-  for (Index i = 0; i < along.size(); ++i) along[i] *= contact.rows->tangents[static_cast<std::size_t>(i)](0, 0);
+  for (Index i = 0; i < along.size(); ++i) along[i] *= contact.rows->tangents[std::size_t(i)](0, 0);
   const Vector pressure = contact.pressure_recovery * forces.normal_reaction;
   const Vector traction = contact.pressure_recovery * along;
   std::vector<ContactNode> nodes;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
-    const auto k = static_cast<Index>(i);
+    const auto k = Index(i);
     nodes.push_back(
         {run.problem().nodes(0, contact.nodes[i]), pressure[k], traction[k], run.state().contact_status[i]});
   }
@@ -111,8 +111,7 @@ TEST(PartialSlip, CylinderPushedAlongThePlane) {
       const double load = run.state().forces.normal_reaction.sum();
       double shear = 0.0;
       for (Index i = 0; i < run.problem().contact.size(); ++i) {
-        shear += run.problem().contact.rows->tangents[static_cast<std::size_t>(i)](0, 0) *
-                 run.state().forces.tangential_reaction[i];
+        shear += run.problem().contact.rows->tangents[std::size_t(i)](0, 0) * run.state().forces.tangential_reaction[i];
       }
       const double a = std::sqrt(4.0 * load * (1.0 - poisson * poisson) / (M_PI * young));  // Hertz
       const double ratio = std::sqrt(1.0 - shear / (coefficient * load));

@@ -84,7 +84,7 @@ TEST(Impacts, OfABarThatBounces) {
   const std::vector<Impact> found = impacts_of(bar(200, "[load]\ngravity = [-10.0, 0.0]\n"), {"time.end=7.5"});
   ASSERT_EQ(found.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double begin = 1.0 + static_cast<double>(i) * 8.0 / 3.0;
+    const double begin = 1.0 + double(i) * 8.0 / 3.0;
     EXPECT_NEAR(found[i].begin, begin, 0.01 * begin) << i;
     EXPECT_NEAR(found[i].end, begin + 2.0 / 3.0, 0.01 * begin) << i;
     EXPECT_NEAR(*found[i].restitution(), 1.0, 0.03) << i;
@@ -271,8 +271,7 @@ TEST(Impacts, GoOnFromASnapshot) {
 TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
   CaseRun run(bar(50, "[initial]\nvelocity = [-10.0, 0.0]\n"), {"time.end=1.6"});
   const Body& body = run.model().body;
-  PeakStress all(body, 1e30), some(body, 20.0 * 20.0 * static_cast<double>(run.model().mesh.cell_count())),
-      frames(body, 0.0);
+  PeakStress all(body, 1e30), some(body, 20.0 * 20.0 * double(run.model().mesh.cell_count())), frames(body, 0.0);
   std::vector<double> stress, density;
   double largest = 0.0, largest_of_frames = 0.0;
   long states = 0, frame_count = 0, largest_step = 0;

@@ -196,7 +196,7 @@ std::string transformed_mesh(const std::string& path, const std::string& name, c
         Eigen::Vector3d x;
         in >> tag >> x[0] >> x[1] >> x[2];
         const Eigen::Vector3d y = map * x;
-        lines[static_cast<std::size_t>(number(tag) - 1)] =
+        lines[std::size_t(number(tag) - 1)] =
             fmt::format("{} {:.17g} {:.17g} {:.17g}\n", number(tag), y[0], y[1], y[2]);
       }
       std::getline(in, line);
@@ -244,13 +244,13 @@ void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumb
       const Vector image = (map * position).head(d);
       Index at = 0;
       (y.colwise() - image).colwise().squaredNorm().minCoeff(&at);
-      partner[static_cast<std::size_t>(i)] = at;
+      partner[std::size_t(i)] = at;
     }
     const auto image = [&](const Vector& field) {
       Vector mapped(field.size());
       for (Index i = 0; i < x.cols(); ++i) {
         Eigen::Vector3d u = Eigen::Vector3d::Zero();
-        u.head(d) = field.segment(partner[static_cast<std::size_t>(i)] * d, d);
+        u.head(d) = field.segment(partner[std::size_t(i)] * d, d);
         mapped.segment(i * d, d) = (map.transpose() * u).head(d);
       }
       return mapped;
@@ -308,7 +308,7 @@ void expect_same_for_observer(const Setting& s, const Eigen::Vector3d& moving, b
     std::vector<Frame> b = frames(t, choice);
     for (std::size_t k = 0; k < b.size(); ++k) {
       for (Index i = 0; i < b[k].displacement.size(); ++i)
-        b[k].displacement[i] -= moving[i % s.dimension] * s.step * static_cast<double>(k);
+        b[k].displacement[i] -= moving[i % s.dimension] * s.step * double(k);
     }
     EXPECT_LT(difference(a, b, comparable(a, choice.smooth), [](const Frame& f) { return f; }), 1e-9)
         << choice.time << s.dimension << " friction " << s.friction;

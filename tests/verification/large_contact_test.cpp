@@ -27,8 +27,7 @@ std::string ball_case(const std::string& group) {
 }
 
 double matrix_share(const CaseRun& run, const CaseRun& of) {
-  return static_cast<double>(run.problem().mass.to_sparse().nonZeros()) /
-         static_cast<double>(of.problem().mass.to_sparse().nonZeros());
+  return double(run.problem().mass.to_sparse().nonZeros()) / double(of.problem().mass.to_sparse().nonZeros());
 }
 
 TEST(LargeContact, AWholeSkinMakesNoLargerFactorThanACap) {
@@ -43,8 +42,7 @@ TEST(LargeContact, TheFactorOfAWholeSkinIsThatOfTheConsistentMass) {
   CaseRun consistent(ball_case("skin"), {"mass.type=consistent"}), skin(ball_case("skin")),
       compact(ball_case("skin"), {"mass.type=equivalent-compact"});
   EXPECT_EQ(skin.simulation().factor_entries(), consistent.simulation().factor_entries()) << "one pattern";
-  EXPECT_LE(static_cast<double>(compact.simulation().factor_entries()),
-            1.1 * static_cast<double>(consistent.simulation().factor_entries()));
+  EXPECT_LE(double(compact.simulation().factor_entries()), 1.1 * double(consistent.simulation().factor_entries()));
 }
 
 /// The estimate from the symbolic analysis, compared with the computed factor and columns.
@@ -54,7 +52,7 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   const std::vector<StageEstimate> estimates = estimate_step_solver(run.problem(), operators);
   ASSERT_EQ(estimates.size(), operators.size());
   ASSERT_EQ(estimates[0].chosen.method, SolverMethod::direct);
-  EXPECT_EQ(estimates[0].factor_bytes, 8.0 * static_cast<double>(run.simulation().factor_entries()));
+  EXPECT_EQ(estimates[0].factor_bytes, 8.0 * double(run.simulation().factor_entries()));
   EXPECT_GE(estimates[0].peak_bytes, estimates[0].factor_bytes);
 
   AnalysedOperator analysed = analyse_operator(run.problem(), operators[0]);
@@ -66,7 +64,7 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   const ContactBoundary& contact = run.problem().contact;
   const auto add = [&](const SparseRowMatrix& from, Index row, Index column) {
     for (SparseRowMatrix::InnerIterator entry(from, row); entry; ++entry)
-      entries.emplace_back(number[static_cast<std::size_t>(entry.col())], static_cast<int>(column), entry.value());
+      entries.emplace_back(number[std::size_t(entry.col())], int(column), entry.value());
   };
   for (Index k = 0; k < points; ++k) {
     const Index point = k * contact.size() / points;
@@ -78,7 +76,7 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   transposed.setFromTriplets(entries.begin(), entries.end());
   Matrix w;
   columns.append(transposed, w);
-  const double made = 8.0 * static_cast<double>(columns.entries()) / static_cast<double>(points);
+  const double made = 8.0 * double(columns.entries()) / double(points);
   EXPECT_GE(estimates[0].bytes_per_point, 0.4 * made);  // adjacent columns share the union of their paths
   EXPECT_LE(estimates[0].bytes_per_point, 1.1 * made);
 }

@@ -109,8 +109,7 @@ Difference compare(CaseRun& alone, CaseRun& pair) {
     if (step >= displacements.size()) return;
     const Vector& expected = displacements[step];
     for (std::size_t i = 0; i < place.size(); ++i) {
-      const Vector difference =
-          pair.state().displacement.segment(place[i] * d, d) - expected.segment(static_cast<Index>(i) * d, d);
+      const Vector difference = pair.state().displacement.segment(place[i] * d, d) - expected.segment(Index(i) * d, d);
       result.displacement = std::max(result.displacement, difference.lpNorm<Eigen::Infinity>());
     }
     result.force = std::max(result.force, std::abs(pair.state().forces.normal_reaction.sum() - forces[step]));

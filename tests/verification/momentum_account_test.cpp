@@ -16,7 +16,7 @@ Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const st
   Resultant result;
   const auto value = [&](const std::string& name) {
     const auto& columns = recorder.columns();
-    return row[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];
+    return row[std::size_t(std::ranges::find(columns, name) - columns.begin())];
   };
   const bool flat = run.problem().dimension == 2;
   result.force << value("momentum_x"), value("momentum_y"), flat ? 0.0 : value("momentum_z");
@@ -149,7 +149,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
         }
         std::vector<double> row;
         contact->observe(observer.observe(run.state()), row);
-        for (int k = 0; k < body.dimension; ++k) EXPECT_EQ(row[static_cast<std::size_t>(k)], sum[k]);
+        for (int k = 0; k < body.dimension; ++k) EXPECT_EQ(row[std::size_t(k)], sum[k]);
       });
     }
   }

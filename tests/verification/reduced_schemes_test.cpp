@@ -294,7 +294,7 @@ std::string block_on_slope(double part, double step, long count, const std::stri
          motion + "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.5\n[load]\ngravity = [" +
          std::to_string(0.5 * part) + ", -1.0]\n[initial]\ndisplacement = \"static\"\n[mass]\ntype = \"equivalent\"\n" +
          "[time]\nscheme = \"reduced-kane\"\nstep = " + std::to_string(step) +
-         "\nend = " + std::to_string(step * static_cast<double>(count)) + "\n";
+         "\nend = " + std::to_string(step * double(count)) + "\n";
 }
 
 TEST(ReducedKane, SticksAtNearlyTheLimitWithoutCreep) {

@@ -27,7 +27,7 @@ using test_support::ThrownBody;
 bool same_bits(const Vector& a, const Vector& b) {
   if (a.size() != b.size()) return false;
   // An empty vector has no address that memcmp accepts.
-  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
 }
 
 void expect_same(const Snapshot& expected, const Snapshot& found, const std::string& trace) {
@@ -202,7 +202,7 @@ TEST(Resume, DamagedEntriesEndInNoOtherError) {
         }
       }
     }
-    EXPECT_GT(refused, static_cast<int>(whole.values().size())) << text;
+    EXPECT_GT(refused, int(whole.values().size())) << text;
   }
 }
 

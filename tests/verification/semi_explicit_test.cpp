@@ -25,7 +25,7 @@ constexpr const char* semi_explicit = "scheme = \"semi-explicit\"\n";
 double dense_eigenvalue(const SemidiscreteProblem& problem, bool condensed) {
   std::vector<Index> inside;
   for (Index dof = 0; dof < problem.dof_count(); ++dof) {
-    if (problem.is_massless[static_cast<std::size_t>(dof)] == 0 && !problem.supports.contains(dof)) {
+    if (problem.is_massless[std::size_t(dof)] == 0 && !problem.supports.contains(dof)) {
       inside.push_back(dof);
     }
   }
@@ -144,7 +144,7 @@ TEST(SemiExplicit, RefusesOtherMassesAndStiffnessDamping) {
 
 TEST(SemiExplicit, StartsWithoutAFactorOfTheMass) {
   CaseRun run(thrown_case(thrown_bodies().front(), "equivalent-lumped", semi_explicit), {"time.step=0.002"});
-  const auto contact = static_cast<std::size_t>(run.problem().contact_dofs.size());
+  const auto contact = std::size_t(run.problem().contact_dofs.size());
   EXPECT_LE(run.simulation().factor_entries(), contact * contact) << "the system of the contact dofs alone";
 }
 

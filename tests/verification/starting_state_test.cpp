@@ -117,7 +117,7 @@ TEST(StartingState, SatisfiesTheMomentumEquationWithEveryMass) {
     for (const Index dof : run.problem().massless_dofs) EXPECT_EQ(run.state().acceleration[dof], 0.0);
     // The support moves as 0.1 t²: velocity 0 and acceleration 0.2 from the first values of the expression.
     const Index dof = run.problem().supports.dofs().front();
-    if (!run.problem().has_singular_mass() || run.problem().is_massless[static_cast<std::size_t>(dof)] == 0) {
+    if (!run.problem().has_singular_mass() || run.problem().is_massless[std::size_t(dof)] == 0) {
       EXPECT_NEAR(run.state().acceleration[dof], 0.2, 1e-9);
     }
     EXPECT_NEAR(run.state().velocity[dof], 0.0, 1e-12);

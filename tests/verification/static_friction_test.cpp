@@ -140,7 +140,7 @@ std::vector<double> vector_after(const std::string& text, const std::string& wor
 /// direction. RICOCHET_RANDOM_CASES=10 tries ten times as many inclines.
 TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
-  const unsigned count = factor != nullptr ? 16 * static_cast<unsigned>(std::atoi(factor)) : 16;
+  const unsigned count = factor != nullptr ? 16 * unsigned(std::atoi(factor)) : 16;
   const std::string flat = inclined_mesh(2), brick = inclined_mesh(3);
   for (unsigned seed = 0; seed < count; ++seed) {
     std::mt19937 random(seed);
@@ -155,7 +155,7 @@ TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
     const std::string message = expect_error({"there is no equilibrium"}, [&] { CaseRun run(block.text()); });
     const std::vector<double> direction = vector_after(message, "slides in the direction");
     const std::vector<double> force = vector_after(message, "a force of");
-    ASSERT_EQ(direction.size(), static_cast<std::size_t>(block.dimension)) << message;
+    ASSERT_EQ(direction.size(), std::size_t(block.dimension)) << message;
     ASSERT_EQ(force.size(), direction.size()) << message;
     const std::vector<double> down = block.down();
     const double volume = block.dimension == 2 ? 3.0 : 9.0;

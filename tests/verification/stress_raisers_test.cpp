@@ -52,7 +52,7 @@ class Raisers {
 };
 
 std::string box_mesh(const std::string& name, CellShape shape, int count, const PointMap& map = {}) {
-  BoxMesh box = box_of(shape, std::vector<int>(static_cast<std::size_t>(dimension(shape)), count));
+  BoxMesh box = box_of(shape, std::vector<int>(std::size_t(dimension(shape)), count));
   box.distortion = 0.0;
   box.map = map;
   return write_mesh(name, make_box_mesh(box));

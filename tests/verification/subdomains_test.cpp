@@ -64,8 +64,8 @@ TEST(Subdomains, HaveLayersForWhatAWaveCrosses) {
     const double expected = crossed * longer * std::sqrt(4.0 / alpha_h2);
     EXPECT_NEAR(cells_crossed(run.problem(), zones.coefficients, zones.product, nodes), expected, 0.25 * expected);
     zones.zones->make({0});
-    EXPECT_GE(zones.zones->layers(), std::clamp(static_cast<int>(std::ceil(0.9 * expected)), 2, 12)) << longer;
-    EXPECT_LE(zones.zones->layers(), std::clamp(static_cast<int>(std::ceil(1.5 * expected)), 2, 12)) << longer;
+    EXPECT_GE(zones.zones->layers(), std::clamp(int(std::ceil(0.9 * expected)), 2, 12)) << longer;
+    EXPECT_LE(zones.zones->layers(), std::clamp(int(std::ceil(1.5 * expected)), 2, 12)) << longer;
   }
 }
 
@@ -99,7 +99,7 @@ TEST(ContactClusters, DivideThePoints) {
     const auto clusters = cluster_points(run.problem(), all_points(run.problem()), most);
     expect_division(run.problem(), clusters);
     for (const auto& cluster : clusters) EXPECT_LE(cluster.size(), most);
-    EXPECT_LE(clusters.size(), 2 * run.problem().contact.size() / static_cast<Index>(most) + 1);
+    EXPECT_LE(clusters.size(), 2 * run.problem().contact.size() / Index(most) + 1);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(Subdomains, FindWhatOneFactorFinds) {
   Index most = 0;
   for (const Frame& frame : direct) {
     force = std::max(force, frame.normal.maxCoeff());
-    most = std::max(most, static_cast<Index>((frame.normal.array() > 0.0).count()));
+    most = std::max(most, Index((frame.normal.array() > 0.0).count()));
   }
   EXPECT_GT(most, 400) << "more points than of one zone";
   for (std::size_t k = 0; k < direct.size(); ++k) {

@@ -16,7 +16,7 @@ constexpr double weight = 3.0;
 
 std::string sheared_mesh(CellShape shape, int count) {
   const int d = dimension(shape);
-  BoxMesh box = box_of(shape, std::vector<int>(static_cast<std::size_t>(d), count));
+  BoxMesh box = box_of(shape, std::vector<int>(std::size_t(d), count));
   // The bottom lies on the slope 3 : 4; the side x0 stays upright.
   box.map = [d](const Vector& x) {
     Vector result = x;

@@ -105,7 +105,7 @@ void expect_no_slip(const Turning& turning, const std::string& law, const std::s
       [&] {
         const Slips slips(run, before, run.state().time - time);
         for (Index i = 0; i < run.problem().contact.size(); ++i) {
-          if (run.state().contact_status[static_cast<std::size_t>(i)] != ContactStatus::stick) continue;
+          if (run.state().contact_status[std::size_t(i)] != ContactStatus::stick) continue;
           ++stuck;
           worst = std::max(worst, slips.slip.segment(i * tangents, tangents).norm() / slips.largest);
         }

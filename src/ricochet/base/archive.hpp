@@ -93,23 +93,23 @@ class Archive {
   }
   template <class Number, int rows, int columns, int options, int most_rows, int most_columns>
   void operator()(Eigen::Matrix<Number, rows, columns, options, most_rows, most_columns>& matrix) {
-    const std::size_t high = count(static_cast<std::size_t>(matrix.rows()));
-    const std::size_t wide = count(static_cast<std::size_t>(matrix.cols()));
-    if (reads_) matrix.resize(static_cast<Index>(high), static_cast<Index>(wide));
-    block(matrix.data(), static_cast<std::size_t>(matrix.size()));
+    const std::size_t high = count(std::size_t(matrix.rows()));
+    const std::size_t wide = count(std::size_t(matrix.cols()));
+    if (reads_) matrix.resize(Index(high), Index(wide));
+    block(matrix.data(), std::size_t(matrix.size()));
   }
   /// Compresses a matrix that is written.
   template <int order>
   void operator()(Eigen::SparseMatrix<double, order, int>& matrix) {
     if (!reads_) matrix.makeCompressed();
-    const std::size_t rows = count(static_cast<std::size_t>(matrix.rows()));
-    const std::size_t columns = count(static_cast<std::size_t>(matrix.cols()));
-    const std::size_t entries = count(static_cast<std::size_t>(matrix.nonZeros()));
+    const std::size_t rows = count(std::size_t(matrix.rows()));
+    const std::size_t columns = count(std::size_t(matrix.cols()));
+    const std::size_t entries = count(std::size_t(matrix.nonZeros()));
     if (reads_) {
-      matrix.resize(static_cast<Index>(rows), static_cast<Index>(columns));
-      matrix.resizeNonZeros(static_cast<Index>(entries));
+      matrix.resize(Index(rows), Index(columns));
+      matrix.resizeNonZeros(Index(entries));
     }
-    block(matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.outerSize()) + 1);
+    block(matrix.outerIndexPtr(), std::size_t(matrix.outerSize()) + 1);
     block(matrix.innerIndexPtr(), entries);
     block(matrix.valuePtr(), entries);
   }

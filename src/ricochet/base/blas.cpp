@@ -47,7 +47,7 @@ bool memory_is_limited() {
 
 void reserve_blas_memory(int threads) {
   if (!memory_is_limited()) return;
-  const auto count = static_cast<std::size_t>(std::max(threads, 1));
+  const auto count = std::size_t(std::max(threads, 1));
   const std::size_t size = count * buffer_size + beginning;
   void* const probe = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (probe == MAP_FAILED) {

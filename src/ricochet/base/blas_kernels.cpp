@@ -86,10 +86,10 @@ std::vector<double> times(const std::vector<double>& matrix, const std::vector<d
 /// compared through their products with one vector, which takes few operations.
 bool computes_rightly(int size) {
   constexpr double one = 1.0;
-  const auto n = static_cast<std::size_t>(size);
+  const auto n = std::size_t(size);
   std::vector<double> a(n * n), b(n * n), x(n);
-  for (std::size_t k = 0; k < a.size(); ++k) a[k] = static_cast<double>(k * k % 199) / 99.0 - 1.0;
-  for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<double>(i * i % 17) / 8.0 - 1.0;
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] = double(k * k % 199) / 99.0 - 1.0;
+  for (std::size_t i = 0; i < n; ++i) x[i] = double(i * i % 17) / 8.0 - 1.0;
   for (std::size_t i = 0; i < n; ++i) b[i * n + i] = size;
   // Entries of A and x are at most 1, hence those of B x at most n³.
   const double tolerance = 4.0 * std::pow(size, 3) * std::numeric_limits<double>::epsilon();
@@ -136,7 +136,7 @@ bool has_memory() {
 }  // namespace
 
 std::string_view better_blas_core(std::string_view chosen, InstructionSet set, bool given) {
-  const std::string_view core = core_of_set[static_cast<std::size_t>(set)];
+  const std::string_view core = core_of_set[std::size_t(set)];
   if (given) return same_name(chosen, core) ? "" : core;
   return demands(chosen) < demands(core) ? core : "";
 }

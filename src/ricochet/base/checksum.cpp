@@ -6,7 +6,7 @@
 namespace ricochet {
 
 Checksum& Checksum::add_bytes(const void* bytes, std::size_t size) {
-  if (size > 0) value_ = static_cast<std::uint32_t>(crc32_z(value_, static_cast<const unsigned char*>(bytes), size));
+  if (size > 0) value_ = std::uint32_t(crc32_z(value_, static_cast<const unsigned char*>(bytes), size));
   size_ += size;
   return *this;
 }

@@ -55,7 +55,7 @@ std::size_t usable_cores() {
   cpu_set_t cores;
   CPU_ZERO(&cores);
   if (sched_getaffinity(0, sizeof cores, &cores) != 0) return std::max(1u, std::thread::hardware_concurrency());
-  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&cores)));
+  return std::size_t(std::max(1, CPU_COUNT(&cores)));
 }
 
 int run_children(std::size_t count, std::size_t at_once, const PoolWork& work) {

@@ -47,7 +47,7 @@ InstructionSet choose() {
 std::string_view name(InstructionSet set) {
 #if defined(__x86_64__)
   constexpr std::array<std::string_view, 3> names{"x86-64", "x86-64-v3", "x86-64-v4"};
-  return names[static_cast<std::size_t>(set)];
+  return names[std::size_t(set)];
 #else
   static_cast<void>(set);
   return "any processor";

@@ -174,7 +174,7 @@ void Json::get(long& result) const {
     result = *value;
   } else if (const auto* number = std::get_if<double>(&value_);
              number != nullptr && std::abs(*number) < 0x1p62 && *number == std::trunc(*number)) {
-    result = static_cast<long>(*number);
+    result = long(*number);
   } else {
     throw Exception("expected an integer instead of " + dump());
   }
@@ -182,7 +182,7 @@ void Json::get(long& result) const {
 
 void Json::get(int& result) const {
   const long value = get<long>();
-  result = static_cast<int>(value);
+  result = int(value);
   if (result != value) throw Exception("expected a smaller number instead of " + dump());
 }
 
@@ -190,7 +190,7 @@ void Json::get(double& result) const {
   if (const auto* value = std::get_if<double>(&value_)) {
     result = *value;
   } else if (const auto* integer = std::get_if<std::int64_t>(&value_)) {
-    result = static_cast<double>(*integer);
+    result = double(*integer);
   } else {
     throw Exception("expected a number instead of " + dump());
   }

@@ -43,7 +43,7 @@ class Json {
   Json(Bool value) : value_(value) {}
   Json(double value) : value_(value) {}
   template <std::integral Integer>
-  requires(!std::same_as<Integer, bool>) Json(Integer value) : value_(static_cast<std::int64_t>(value)) {}
+  requires(!std::same_as<Integer, bool>) Json(Integer value) : value_(std::int64_t(value)) {}
   Json(const char* text) : value_(std::string(text)) {}
   Json(std::string_view text) : value_(std::string(text)) {}
   Json(std::string text) : value_(std::move(text)) {}

@@ -53,7 +53,7 @@ std::string& run_case_file() {
 }
 
 spdlog::level::level_enum spdlog_level(Level level) {
-  return levels.at(static_cast<std::size_t>(level)).second;
+  return levels.at(std::size_t(level)).second;
 }
 
 void write_message(Level level, const std::string& message) {
@@ -117,7 +117,7 @@ CollectWarnings::~CollectWarnings() {
 
 Silence::Silence() {
   before_ = Level::trace;
-  while (!enabled(before_)) before_ = static_cast<Level>(static_cast<int>(before_) + 1);
+  while (!enabled(before_)) before_ = static_cast<Level>(int(before_) + 1);
   set_level(Level::off);
 }
 Silence::~Silence() {

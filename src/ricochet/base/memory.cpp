@@ -18,7 +18,7 @@ namespace ricochet {
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 double physical_memory() {
-  double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   // The file contains "max" if there is no limit: not a number, and extraction fails.
   for (const char* name : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
     std::ifstream file(name);
@@ -31,7 +31,7 @@ double physical_memory() {
 double peak_memory() {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+  return 1024.0 * double(usage.ru_maxrss);
 }
 
 void release_freed_memory() {

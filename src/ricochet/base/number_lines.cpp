@@ -52,7 +52,7 @@ std::string_view TextWords::next() {
   }
   word_ = at_;
   while (at_ != end_ && !is_one_of(*at_, blanks)) ++at_;
-  return {word_, static_cast<std::size_t>(at_ - word_)};
+  return {word_, std::size_t(at_ - word_)};
 }
 
 void TextWords::skip_line() {
@@ -67,7 +67,7 @@ double TextWords::number() {
 }
 
 void TextWords::fail(const std::string& problem) const {
-  refuse_at(file_, line_, static_cast<std::size_t>(word_ - line_begin_) + 1, problem);
+  refuse_at(file_, line_, std::size_t(word_ - line_begin_) + 1, problem);
 }
 
 NumberLines::NumberLines(const std::string& file, std::string_view text, Header header)

@@ -48,7 +48,7 @@ RICOCHET_PART_OF_CALLER void store(double* to, const Pack<H>& value) {
 
 /// Number of doubles in a Number.
 template <class Number>
-inline constexpr int lane_count = static_cast<int>(sizeof(Number) / sizeof(double));
+inline constexpr int lane_count = int(sizeof(Number) / sizeof(double));
 
 /// Returns whether a comparison holds for some of them; `mask` is its result.
 template <class Mask>

@@ -52,7 +52,7 @@ class Pool {
  public:
   /// Creates `count` threads, including the caller's.
   explicit Pool(int count) : count_(count) {
-    threads_.reserve(static_cast<std::size_t>(count - 1));
+    threads_.reserve(std::size_t(count - 1));
     const BlockedSignals signals_are_for_the_caller;
     for (int i = 1; i < count; ++i) threads_.emplace_back([this] { serve(); });
   }
@@ -68,13 +68,12 @@ class Pool {
   [[nodiscard]] int count() const { return count_; }
 
   void run(Index count, const detail::RangeWork& work) {
-    const Index parts =
-        std::min<Index>(count, work.one_by_one ? most_parts : static_cast<Index>(count_) * parts_per_thread);
+    const Index parts = std::min<Index>(count, work.one_by_one ? most_parts : Index(count_) * parts_per_thread);
     size_ = count;
     work_ = work;
-    unfinished_.store(static_cast<int>(parts));
+    unfinished_.store(int(parts));
     const std::uint32_t call = call_.load(std::memory_order_relaxed) + 1;
-    ticket_.store(std::uint64_t{call} << 32 | static_cast<std::uint64_t>(parts) << 16, std::memory_order_release);
+    ticket_.store(std::uint64_t{call} << 32 | std::uint64_t(parts) << 16, std::memory_order_release);
     call_.store(call, std::memory_order_release);
     call_.notify_all();
     run_parts();
@@ -95,8 +94,8 @@ class Pool {
   void run_parts() {
     while (true) {
       const std::uint64_t ticket = ticket_.fetch_add(1, std::memory_order_acq_rel);
-      const auto part = static_cast<Index>(ticket & 0xffff);
-      const auto parts = static_cast<Index>(ticket >> 16 & 0xffff);
+      const auto part = Index(ticket & 0xffff);
+      const auto parts = Index(ticket >> 16 & 0xffff);
       if (part >= parts) return;
       inside_range = true;
       try {

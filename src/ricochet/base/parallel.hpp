@@ -58,11 +58,11 @@ template <class Sum, class Work>
   std::array<Sum, most_parts> sums;
   parallel_ranges(parts, [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      sums[static_cast<std::size_t>(part)] = work(part * size, std::min(count, (part + 1) * size));
+      sums[std::size_t(part)] = work(part * size, std::min(count, (part + 1) * size));
     }
   });
   Sum total{};
-  for (Index part = 0; part < parts; ++part) total += sums[static_cast<std::size_t>(part)];
+  for (Index part = 0; part < parts; ++part) total += sums[std::size_t(part)];
   return total;
 }
 

@@ -24,11 +24,11 @@ struct Ball {
 /// a_i = x_i − x_0 and c = x_0 + Σ λ_i a_i, Σ_j 2 a_i·a_j λ_j = a_i·a_i. None if the points are not affinely
 /// independent.
 std::optional<Ball> ball_through(const Points& nodes, const std::vector<Index>& points) {
-  const Index count = static_cast<Index>(points.size()) - 1;
+  const Index count = Index(points.size()) - 1;
   const Vector first = nodes.col(points[0]);
   if (count == 0) return Ball{first, 0.0};
   Matrix edges(nodes.rows(), count);
-  for (Index k = 0; k < count; ++k) edges.col(k) = nodes.col(points[static_cast<std::size_t>(k) + 1]) - first;
+  for (Index k = 0; k < count; ++k) edges.col(k) = nodes.col(points[std::size_t(k) + 1]) - first;
   const double scale = edges.colwise().norm().maxCoeff();
   if (!(scale > 0.0)) return std::nullopt;
   edges /= scale;
@@ -48,7 +48,7 @@ std::pair<Ball, std::vector<Index>> smallest_ball(const Points& nodes, const std
     for (std::size_t k = 0; k < points.size(); ++k) {
       if ((subset >> k & 1U) != 0U) chosen.push_back(points[k]);
     }
-    if (static_cast<Index>(chosen.size()) > nodes.rows() + 1) continue;
+    if (Index(chosen.size()) > nodes.rows() + 1) continue;
     const std::optional<Ball> ball = ball_through(nodes, chosen);
     if (!ball || (found && !(ball->radius < best.first.radius))) continue;
     if (!std::ranges::all_of(points, [&](Index point) { return ball->has(nodes.col(point)); })) continue;

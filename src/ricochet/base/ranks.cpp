@@ -17,7 +17,7 @@ void Ranks::run_collectively(const std::function<void()>& work) const {
   ForEach<std::int64_t> messages(static_cast<std::size_t>(size()));
   if (own) {
     const std::string text = own->what();
-    std::vector<std::int64_t> message{static_cast<std::int64_t>(own->kind())};
+    std::vector<std::int64_t> message{std::int64_t(own->kind())};
     message.insert(message.end(), text.begin(), text.end());
     std::ranges::fill(messages, message);
   }

@@ -71,7 +71,7 @@ class Ranks {
 
   /// Returns the values of every rank, on every rank.
   [[nodiscard]] ForEach<double> all_gather(const std::vector<double>& own) const {
-    return exchange(ForEach<double>(static_cast<std::size_t>(size()), own));
+    return exchange(ForEach<double>(std::size_t(size()), own));
   }
   /// Returns the texts of all ranks on the first rank; none on the others.
   [[nodiscard]] std::vector<std::string> gather_texts(const std::string& own) const;

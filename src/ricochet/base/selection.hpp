@@ -13,7 +13,7 @@ template <class Value>
   std::vector<Value> result;
   if (values.empty()) return result;
   result.reserve(indices.size());
-  for (const Index i : indices) result.push_back(values[static_cast<std::size_t>(i)]);
+  for (const Index i : indices) result.push_back(values[std::size_t(i)]);
   return result;
 }
 [[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& indices) {
@@ -40,7 +40,7 @@ template <class Value>
 /// For each number below `count`, its position in a list, or −1.
 [[nodiscard]] inline std::vector<Index> inverse_indices(const std::vector<Index>& numbers, Index count) {
   std::vector<Index> result(static_cast<std::size_t>(count), -1);
-  for (std::size_t i = 0; i < numbers.size(); ++i) result[static_cast<std::size_t>(numbers[i])] = static_cast<Index>(i);
+  for (std::size_t i = 0; i < numbers.size(); ++i) result[std::size_t(numbers[i])] = Index(i);
   return result;
 }
 

@@ -116,7 +116,7 @@ void SnapshotVisitor::exchange(const std::string& key, Snapshot::Integers& value
                                Index size) const {
   if (!loads()) return to_->save(name_of(key), values);
   values = from_->integers(name_of(key), range.least, range.most);
-  require(size < 0 || static_cast<Index>(values.size()) == size, key,
+  require(size < 0 || Index(values.size()) == size, key,
           fmt::format("has {} numbers where {} are expected", values.size(), size));
 }
 
@@ -124,7 +124,7 @@ std::size_t SnapshotVisitor::count_of_records(const std::string& key, Index widt
   const Index size = from_->reals(name_of(key)).size();
   require(width > 0 && size % width == 0, key,
           fmt::format("has {} numbers where a multiple of {} is expected", size, width));
-  const auto count = static_cast<std::size_t>(size / width);
+  const auto count = std::size_t(size / width);
   require(count <= most, key, fmt::format("has {} records where at most {} are possible", count, most));
   return count;
 }

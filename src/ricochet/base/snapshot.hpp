@@ -83,7 +83,7 @@ class NumberVisitor {
   NumberVisitor() = default;
   /// Creates a visitor that reads these numbers of an entry.
   NumberVisitor(const Vector& numbers, std::string name)
-      : read_(numbers.data(), static_cast<std::size_t>(numbers.size())), name_(std::move(name)), reads_(true) {}
+      : read_(numbers.data(), std::size_t(numbers.size())), name_(std::move(name)), reads_(true) {}
 
   /// Visits a number, the numbers of a vector or an array, or those of a record, which lists them in members(). Throws
   /// Error(invalid_input) if an integer or a flag is read from a number that is no whole number of its range.
@@ -92,14 +92,12 @@ class NumberVisitor {
     if constexpr (std::is_floating_point_v<Value>) {
       visit(value);
     } else if constexpr (std::is_arithmetic_v<Value>) {
-      auto number = static_cast<double>(value);
+      auto number = double(value);
       visit(number);
       using Limits = std::numeric_limits<Value>;
-      if (reads_)
-        value = static_cast<Value>(
-            whole(number, static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max())));
+      if (reads_) value = static_cast<Value>(whole(number, double(Limits::lowest()), double(Limits::max())));
     } else if constexpr (requires { value.data(); }) {
-      for (auto& each : std::span(value.data(), static_cast<std::size_t>(value.size()))) (*this)(each);
+      for (auto& each : std::span(value.data(), std::size_t(value.size()))) (*this)(each);
     } else {
       std::apply([this](auto&... members) { ((*this)(members), ...); }, value.members());
     }
@@ -162,8 +160,8 @@ class SnapshotVisitor {
   /// Visits several integers as one entry.
   template <WholeNumber... Wholes>
   void integers(const std::string& key, IntegerRange range, Wholes&... values) const {
-    Snapshot::Integers integers{static_cast<std::int64_t>(values)...};
-    exchange(key, integers, range, static_cast<Index>(integers.size()));
+    Snapshot::Integers integers{std::int64_t(values)...};
+    exchange(key, integers, range, Index(integers.size()));
     auto next = integers.begin();
     (assign(key, *next++, values), ...);
   }
@@ -173,7 +171,7 @@ class SnapshotVisitor {
   Vector numbers(const std::string& key, Values&... values) const {
     NumberVisitor writes;
     (writes(values), ...);
-    Vector all = Eigen::Map<const Vector>(writes.written().data(), static_cast<Index>(writes.written().size()));
+    Vector all = Eigen::Map<const Vector>(writes.written().data(), Index(writes.written().size()));
     (*this)(key, all, all.size());
     if (loads()) {
       NumberVisitor reads(all, name_of(key));
@@ -189,7 +187,7 @@ class SnapshotVisitor {
     if (loads()) {
       NumberVisitor writes;
       writes(one);
-      records.assign(count_of_records(key, static_cast<Index>(writes.written().size()), most), one);
+      records.assign(count_of_records(key, Index(writes.written().size()), most), one);
     }
     numbers(key, records);
   }
@@ -206,7 +204,7 @@ class SnapshotVisitor {
   template <class Whole>
   void assign(const std::string& key, std::int64_t from, Whole& to) const {
     to = static_cast<Whole>(from);
-    if (static_cast<std::int64_t>(to) != from) require(false, key, "has " + std::to_string(from) + ", out of range");
+    if (std::int64_t(to) != from) require(false, key, "has " + std::to_string(from) + ", out of range");
   }
 
   Snapshot* to_;

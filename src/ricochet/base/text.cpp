@@ -115,7 +115,7 @@ bool is_like_number(std::string_view word) {
   if (word.empty()) return false;
   if (std::string_view("+-.,0123456789").find(word.front()) != std::string_view::npos) return true;
   std::string start;
-  for (const char c : word) start += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char c : word) start += char(std::tolower(static_cast<unsigned char>(c)));
   return start == "nan" || start.starts_with("nan(") || start == "inf" || start == "infinity";
 }
 

@@ -31,7 +31,7 @@ class ProcessorTimer {
   [[nodiscard]] static double now() {
     struct timespec time {};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
   }
   double start_ = now();
 };

@@ -23,11 +23,11 @@ SourceLocation Case::where(const std::string& key_path) const {
 
 long step_count(const TimeSection& time) {
   // An end that is a whole number of steps up to rounding is taken as that number.
-  return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
+  return std::max(1L, long(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 
 double run_end(const TimeSection& time) {
-  return time.adaptive ? time.end : static_cast<double>(step_count(time)) * time.step;
+  return time.adaptive ? time.end : double(step_count(time)) * time.step;
 }
 
 }  // namespace ricochet

@@ -64,7 +64,7 @@ const TomlNode* find_entry(const TomlNode& root, const KeyPath& path, std::strin
   const TomlNode* node = path.section->kind == SectionKind::top ? &root : root.find(path.section->name);
   if (path.section->kind == SectionKind::list) {
     const std::size_t count = node != nullptr && node->is_list_of_tables() ? node->children.size() : 0;
-    const auto number = static_cast<std::size_t>(std::stol(path.entry));
+    const auto number = std::size_t(std::stol(path.entry));
     if (number >= count) {
       problem = fmt::format("there is no entry {} of {}: {}", number, section_title(*path.section),
                             count == 0   ? "the case has none"

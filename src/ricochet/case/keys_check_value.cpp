@@ -17,7 +17,7 @@ using Kind = TomlNode::Kind;
 // Accepts integers as numbers and converts them, so that 1 and 1.0 have the same text.
 bool make_finite_number(TomlNode& value) {
   if (value.kind == Kind::integer) {
-    value.real = static_cast<double>(value.integer);
+    value.real = double(value.integer);
     value.kind = Kind::real;
   }
   return value.kind == Kind::real && std::isfinite(value.real);
@@ -31,8 +31,7 @@ bool is_choice(const std::string& word, const std::vector<std::string>& choices)
 std::string bare_word(const std::string& word) {
   std::string bare;
   for (const char c : word) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      bare += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) bare += char(std::tolower(static_cast<unsigned char>(c)));
   }
   return bare;
 }
@@ -78,7 +77,7 @@ bool has_decimal_commas(const TomlNode& list) {
     const TomlNode &whole = parts[i], &fraction = parts[i + 1];
     if (whole.kind != Kind::integer || fraction.kind != Kind::integer || fraction.integer < 0) return false;
     if (whole.location.line != fraction.location.line) return false;
-    const auto digits = static_cast<int>(std::to_string(whole.integer).size());
+    const auto digits = int(std::to_string(whole.integer).size());
     const int width = fraction.location.column - whole.location.column - 1;
     const bool may_be_minus_zero = whole.integer == 0 && width == digits + 1;  // or 0 and a blank
     if (width != digits && !may_be_minus_zero) return false;
@@ -136,7 +135,7 @@ void ValueCheck::check_number() {
 
 void ValueCheck::check_integer() {
   refuse_unless(value_.kind == Kind::integer &&
-                (key_.choices.empty() ? is_within(key_.range, static_cast<double>(value_.integer))
+                (key_.choices.empty() ? is_within(key_.range, double(value_.integer))
                                       : is_choice(std::to_string(value_.integer), key_.choices)));
 }
 

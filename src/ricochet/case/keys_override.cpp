@@ -47,7 +47,7 @@ TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLoc
 TomlNode* enter_sub_table(TomlNode& node, const KeyPath& path) {
   if (path.sub_entry.empty() && !node.is_list_of_tables()) return &node;
   const std::size_t count = node.is_list_of_tables() ? node.children.size() : 0;
-  const auto number = path.sub_entry.empty() ? count : static_cast<std::size_t>(std::stol(path.sub_entry));
+  const auto number = path.sub_entry.empty() ? count : std::size_t(std::stol(path.sub_entry));
   if (number < count) return &node.children[number];
   throw Error(ErrorKind::invalid_input,
               count == 0 ? fmt::format("\"{0}\" is not a list of tables: write {0}.{1}", path.sub_table, path.key->name)
@@ -62,7 +62,7 @@ TomlNode* enter_section(TomlNode& root, const KeyPath& path, const SourceLocatio
     std::string problem;
     static_cast<void>(find_entry(root, path, problem));
     if (!problem.empty()) throw Error(ErrorKind::invalid_input, problem);
-    table = &root.find(path.section->name)->children[static_cast<std::size_t>(std::stol(path.entry))];
+    table = &root.find(path.section->name)->children[std::size_t(std::stol(path.entry))];
   } else if (path.section->kind != SectionKind::top) {
     table = &enter_table(root, path.section->name, location);
     if (path.section->kind == SectionKind::named && table->is_table())

@@ -25,7 +25,7 @@ void read_file(const SectionReader& reader, BodyFile& body) {
   const std::filesystem::path file = reader.text("file");
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   if (body.size && extension == ".msh") {
     reader.add_problem(
         "size", fmt::format("\"size\" is only for geometry that the gmsh program meshes; \"{}\" is already a mesh",

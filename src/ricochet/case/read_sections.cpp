@@ -180,7 +180,7 @@ void check_smallest(const SectionReader& reader, const TimeSection& time) {
   if (!reader.is_given("smallest") || !reader.is_usable("smallest") || time.smallest > time.step) return;
   const double levels =
       std::min(std::floor(std::log2(StepControl::most_ticks * (time.step / time.end))), 1.0 * StepControl::most_levels);
-  const double least = std::ldexp(time.step, -static_cast<int>(levels));
+  const double least = std::ldexp(time.step, -int(levels));
   if (time.smallest >= least * (1.0 - 1e-9)) return;
   reader.add_problem("smallest",
                      fmt::format("\"smallest\" is {}, too short compared with \"largest\", {}, and \"end\", {}: times "

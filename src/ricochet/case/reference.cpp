@@ -240,7 +240,7 @@ std::string rows(const std::vector<Key>& keys, const std::string& prefix) {
 std::string anchor(const Section& section) {
   std::string name;
   for (const char c : section_title(section))
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += static_cast<char>(std::tolower(c));
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += char(std::tolower(c));
   return name;
 }
 

@@ -75,7 +75,7 @@ void SectionReader::read(const Key& key, std::vector<int>& value) const {
   value.clear();
   for (const TomlNode& entry : usable(key.name)->children) {
     const auto choice = std::ranges::find(key.choices, entry.text);
-    value.push_back(static_cast<int>(choice - key.choices.begin()));
+    value.push_back(int(choice - key.choices.begin()));
   }
   std::ranges::sort(value);
 }
@@ -158,7 +158,7 @@ Parameters SectionReader::parameters(const std::vector<Key>& keys) const {
   for (const Key& key : keys) {
     if (!is_usable(key.name)) continue;
     if (key.type == KeyType::number) values.set(key.name, number(key.name));
-    if (key.type == KeyType::integer) values.set(key.name, static_cast<double>(usable(key.name)->integer));
+    if (key.type == KeyType::integer) values.set(key.name, double(usable(key.name)->integer));
     if (key.type == KeyType::vector) {
       std::vector<double> components;
       read(key, components);

@@ -56,7 +56,7 @@ class SectionReader final : public ParameterCheck {
   void read(const Key& key, std::string& value) const;
   void read(const Key& key, double& value) const { value = usable(key.name)->real; }
   void read(const Key& key, std::optional<double>& value) const { value = usable(key.name)->real; }
-  void read(const Key& key, int& value) const { value = static_cast<int>(usable(key.name)->integer); }
+  void read(const Key& key, int& value) const { value = int(usable(key.name)->integer); }
   void read(const Key& key, long& value) const { value = usable(key.name)->integer; }
   void read(const Key& key, std::optional<long>& value) const { value = usable(key.name)->integer; }
   void read(const Key& key, bool& value) const { value = usable(key.name)->boolean; }

@@ -16,7 +16,7 @@ namespace ricochet {
 namespace {
 
 SourceLocation location_of(const toml::source_region& region, const std::string& file) {
-  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+  return {file, int(region.begin.line), int(region.begin.column)};
 }
 
 bool stands_before(const TomlNode& a, const TomlNode& b) {
@@ -91,7 +91,7 @@ std::string number_hint(const std::string& document, const SourceLocation& locat
   }
   const std::string line = document.substr(begin, document.find('\n', begin) - begin);
   constexpr std::string_view digits = "0123456789";
-  const auto comma = static_cast<std::size_t>(location.column) - 1;
+  const auto comma = std::size_t(location.column) - 1;
   const std::size_t equals = line.find('=');
   if (equals < comma && line.find('=', equals + 1) == std::string::npos && is_number_with_unit(line.substr(equals + 1)))
     return units_are_not_written;
@@ -135,7 +135,7 @@ bool is_number_with_unit(const std::string& text) {
   if (begin == std::string::npos || text.find_first_of("+-.0123456789", begin) != begin) return false;
   char* end = nullptr;
   std::strtod(text.c_str() + begin, &end);
-  const std::size_t unit = text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str()));
+  const std::size_t unit = text.find_first_not_of(' ', std::size_t(end - text.c_str()));
   return end != text.c_str() + begin && unit != std::string::npos &&
          std::isalpha(static_cast<unsigned char>(text[unit])) != 0;
 }

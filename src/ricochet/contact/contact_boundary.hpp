@@ -133,28 +133,27 @@ struct ContactBoundary {
   /// Calls visit(node, t_ij) for the nodes in the trace of a point.
   template <class Visit>
   void visit_nodes(Index point, const Visit& visit) const {
-    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
-      visit(static_cast<Index>(entry.col()), entry.value());
+    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry) visit(Index(entry.col()), entry.value());
   }
   /// Calls visit(node, c_ij) for c alone: the nodes whose mean position is that of the point.
   template <class Visit>
   void visit_own_nodes(Index point, const Visit& visit) const {
     for (SparseRowMatrix::InnerIterator entry(own_trace, point); entry; ++entry)
-      visit(static_cast<Index>(entry.col()), entry.value());
+      visit(Index(entry.col()), entry.value());
   }
   [[nodiscard]] Index first_own_node(Index point) const {
     return SparseRowMatrix::InnerIterator(own_trace, point).col();
   }
   [[nodiscard]] bool between_bodies(Index point) const { return net[point] == 0.0; }
   [[nodiscard]] bool slides(Index point) const {
-    return !large_sliding.empty() && large_sliding[static_cast<std::size_t>(point)] != 0;
+    return !large_sliding.empty() && large_sliding[std::size_t(point)] != 0;
   }
   [[nodiscard]] bool has_sliding_pairs() const { return !reachable_nodes.empty(); }
   /// Calls visit(point, value) for the points from which the pressure at an entry of `nodes` is recovered.
   template <class Visit>
   void visit_recovery(Index entry, const Visit& visit) const {
     for (SparseRowMatrix::InnerIterator from(pressure_recovery, entry); from; ++from)
-      visit(static_cast<Index>(from.col()), from.value());
+      visit(Index(from.col()), from.value());
   }
   /// Computes the pressure at the entries of `nodes`, in stress units; with several ranks, the
   /// contribution of the local points.

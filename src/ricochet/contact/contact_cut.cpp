@@ -13,14 +13,12 @@ namespace {
 /// Visits the members of a boundary and restricts each to a part.
 class ContactCutter {
  public:
-  ContactCutter(const ContactCut& part, Index dimension)
-      : part_(part), d_(dimension), nodes_(static_cast<std::size_t>(part.nodes)) {
+  ContactCutter(const ContactCut& part, Index dimension) : part_(part), d_(dimension), nodes_(std::size_t(part.nodes)) {
     for (const Index point : part.points) {
       for (Index k = 0; k < d_ - 1; ++k) tangents_.push_back(point * (d_ - 1) + k);
     }
     for (std::size_t node = 0; node < part.node_number.size(); ++node) {
-      if (const Index own = part.node_number[node]; own >= 0)
-        nodes_[static_cast<std::size_t>(own)] = static_cast<Index>(node);
+      if (const Index own = part.node_number[node]; own >= 0) nodes_[std::size_t(own)] = Index(node);
     }
   }
 
@@ -39,7 +37,7 @@ class ContactCutter {
   }
   /// Number of an item of the whole in the part, or −1.
   [[nodiscard]] Index number(ContactAxis axis, Index item) const {
-    const auto at = static_cast<std::size_t>(item);
+    const auto at = std::size_t(item);
     if (axis == ContactAxis::node) return part_.node_number[at];
     if (axis == ContactAxis::facet) return part_.facet_number.empty() ? -1 : part_.facet_number[at];
     if (axis != ContactAxis::dof) return index_in(items(axis), item);
@@ -76,11 +74,11 @@ class ContactCutter {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (SparseRowMatrix::InnerIterator entry(matrix, rows[i]); entry; ++entry) {
         const Index column = number(axes.of, entry.col());
-        if (column >= 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(column), entry.value());
+        if (column >= 0) entries.emplace_back(int(i), int(column), entry.value());
       }
     }
-    const Index columns = axes.of == ContactAxis::dof ? part_.nodes * d_ : static_cast<Index>(items(axes.of).size());
-    matrix = SparseRowMatrix(static_cast<Index>(rows.size()), columns);
+    const Index columns = axes.of == ContactAxis::dof ? part_.nodes * d_ : Index(items(axes.of).size());
+    matrix = SparseRowMatrix(Index(rows.size()), columns);
     matrix.setFromTriplets(entries.begin(), entries.end());
   }
   void cut(ContactAxes axes, std::shared_ptr<const SparseRowMatrix>& matrix) {

@@ -63,13 +63,13 @@ void write_directions(Index point, const SpaceVector& normal, const std::array<b
                       const SparseRowMatrix& trace, ContactRows& rows) {
   const Index d = normal.size();
   const ContactTangents tangents =
-      tangents_at(0, normal, [&](Index, int component) { return is_free[static_cast<std::size_t>(component)]; });
+      tangents_at(0, normal, [&](Index, int component) { return is_free[std::size_t(component)]; });
   rows.normals.col(point) = normal;
-  rows.tangents[static_cast<std::size_t>(point)] = tangents.directions;
+  rows.tangents[std::size_t(point)] = tangents.directions;
   for (Index j = 0; j < d - 1; ++j) {
     const Index row = point * (d - 1) + j;
-    const bool slips = tangents.slips[static_cast<std::size_t>(j)];
-    rows.slips[static_cast<std::size_t>(row)] = slips ? 1 : 0;
+    const bool slips = tangents.slips[std::size_t(j)];
+    rows.slips[std::size_t(row)] = slips ? 1 : 0;
     double* slip = rows.tangential_trace.valuePtr() + rows.tangential_trace.outerIndexPtr()[row];
     for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry) {
       for (Index k = 0; k < d; ++k) *slip++ = slips ? entry.value() * tangents.directions(k, j) : 0.0;

@@ -4,14 +4,13 @@ namespace ricochet {
 
 SpaceVector ContactRows::along_tangents(Index point, const Vector& components) const {
   const Index count = normals.rows() - 1;
-  return tangents[static_cast<std::size_t>(point)] * components.segment(point * count, count);
+  return tangents[std::size_t(point)] * components.segment(point * count, count);
 }
 
 SpaceVector ContactRows::force(Index point, const Vector& normal, const Vector& tangential) const {
   SpaceVector force = normal[point] * normals.col(point);
   const Index count = normals.rows() - 1;
-  if (tangential.size() > 0)
-    force.noalias() -= tangents[static_cast<std::size_t>(point)] * tangential.segment(point * count, count);
+  if (tangential.size() > 0) force.noalias() -= tangents[std::size_t(point)] * tangential.segment(point * count, count);
   return force;
 }
 
@@ -33,9 +32,8 @@ void project_motion(const ContactRows& rows, ObstacleMotion& motion) {
     motion.normal[i] = rows.normals.col(i).dot(motion.in_space.col(i));
     for (Index k = 0; k < tangents; ++k) {
       const Index row = i * tangents + k;
-      const bool slips = rows.slips[static_cast<std::size_t>(row)] != 0;
-      motion.tangential[row] =
-          slips ? rows.tangents[static_cast<std::size_t>(i)].col(k).dot(motion.in_space.col(i)) : 0.0;
+      const bool slips = rows.slips[std::size_t(row)] != 0;
+      motion.tangential[row] = slips ? rows.tangents[std::size_t(i)].col(k).dot(motion.in_space.col(i)) : 0.0;
     }
   }
 }

@@ -32,7 +32,7 @@ struct ContactRows : ContactFrames {
   std::vector<long> revision;        ///< per point: changes with its row; empty if rows never change
 
   [[nodiscard]] Index size() const { return normals.cols(); }
-  [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }
+  [[nodiscard]] int dimension() const { return int(normals.rows()); }
   [[nodiscard]] SpaceVector normal(Index point) const { return normals.col(point); }
   /// Vector with given components along the tangents of a point, (d−1) per point.
   [[nodiscard]] SpaceVector along_tangents(Index point, const Vector& components) const;
@@ -47,12 +47,12 @@ struct ContactRows : ContactFrames {
   template <class Visit>
   void visit_normal(Index point, const Visit& visit) const {
     for (SparseRowMatrix::InnerIterator entry(gap_operator, point); entry; ++entry)
-      visit(static_cast<Index>(entry.col()), entry.value());
+      visit(Index(entry.col()), entry.value());
   }
   template <class Visit>
   void visit_tangential(Index row, const Visit& visit) const {
     for (SparseRowMatrix::InnerIterator entry(tangential_trace, row); entry; ++entry)
-      visit(static_cast<Index>(entry.col()), entry.value());
+      visit(Index(entry.col()), entry.value());
   }
 };
 

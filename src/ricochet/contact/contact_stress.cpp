@@ -138,7 +138,7 @@ class StressRows {
   /// Gradients of the shape functions of a cell, at one of its nodes.
   Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const IndexInBlocks& in, Index node) const {
     const BlockRules& rules = cells_[in.block];
-    const auto at = static_cast<std::size_t>(node);
+    const auto at = std::size_t(node);
     const Index* nodes = body_.mesh->cells[in.block].cell(in.local);
     return rules.displacement.gradients[at] *
            jacobian<d>(body_.mesh->nodes, nodes, rules.geometry.gradients[at]).inverse();
@@ -148,7 +148,7 @@ class StressRows {
   Space normal_at(const IndexInBlocks& at, Index node, const IndexInBlocks& in) const {
     const CellBlock& geometry = body_.mesh->facets[at.block];
     const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local),
-                                          facet_maps_[at.block].gradients[static_cast<std::size_t>(node)]);
+                                          facet_maps_[at.block].gradients[std::size_t(node)]);
     Space normal;
     if constexpr (d == 2) {
       normal << along(1, 0), -along(0, 0);
@@ -171,7 +171,7 @@ class StressRows {
     if (all.empty()) return 0.0;
     const CellBlock& geometry = body_.mesh->cells[location.block];
     const BlockIntegration& integration = cells_[location.block].stiffness;
-    const int count = static_cast<int>(integration.displacement.values.rows());
+    const int count = int(integration.displacement.values.rows());
     std::vector<double> pairs(static_cast<std::size_t>(pair_number(0, count)) * d * d);
     element_stiffness<d>(integration, body_.mesh->nodes, geometry.cell(location.local),
                          linear_law(body_, material_of(body_, cell)), pairs.data());
@@ -186,7 +186,7 @@ class StressRows {
     }
     Matrix rows(static_cast<Index>(all.size()), stiffness.cols());
     for (std::size_t k = 0; k < all.size(); ++k)
-      rows.row(static_cast<Index>(k)) = std::sqrt(std::abs(all[k].share)) * all[k].row.transpose();
+      rows.row(Index(k)) = std::sqrt(std::abs(all[k].share)) * all[k].row.transpose();
     // Uses the eigenvectors of K_cell except its rigid motions, which cause no stress.
     const SymmetricEigen eigen = symmetric_eigen(stiffness);
     const Index rigid = is_axisymmetric(body_) ? 1 : d * (d + 1) / 2, rest = stiffness.cols() - rigid;

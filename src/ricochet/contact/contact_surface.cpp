@@ -86,13 +86,12 @@ class ContactSurface::Builder {
   [[nodiscard]] std::vector<Entry> entries_of(int patch) const {
     std::vector<Entry> result;
     for (std::size_t entry = 0; entry < boundary_.nodes.size(); ++entry) {
-      const auto pair = static_cast<std::size_t>(boundary_.node_pair[entry]);
+      const auto pair = std::size_t(boundary_.node_pair[entry]);
       const Index node = boundary_.nodes[entry];
       if (boundary_.is_opposite[entry] != 0 || surface_.patch_of_pair_[pair] != patch) continue;
       if (!result.empty() && result.back().node == node) continue;  // from another pair
       const auto slot = slot_of_.find(node);
-      result.push_back(
-          {static_cast<Index>(entry), node, slot != slot_of_.end() ? static_cast<Index>(slot->second) : Index{-1}});
+      result.push_back({Index(entry), node, slot != slot_of_.end() ? Index(slot->second) : Index{-1}});
     }
     return result;
   }
@@ -102,7 +101,7 @@ class ContactSurface::Builder {
     const std::vector<double> own = plate_moduli(body_, contact.facets);
     double compliance = 0.0;
     for (const double modulus : plate_moduli(body_, contact.opposite_facets))
-      compliance += 1.0 / (modulus * static_cast<double>(contact.opposite_facets.size()));
+      compliance += 1.0 / (modulus * double(contact.opposite_facets.size()));
     for (std::size_t i = 0; i < contact.facets.size(); ++i) {
       const IndexInBlocks location = locate_facet(*body_.space, contact.facets[i]);
       const CellBlock& geometry = body_.mesh->facets[location.block];
@@ -118,36 +117,33 @@ class ContactSurface::Builder {
 
   void add_points(int patch) {
     for (Index point = 0; point < boundary_.size(); ++point) {
-      if (surface_.patch_of_pair_[static_cast<std::size_t>(boundary_.pair[static_cast<std::size_t>(point)])] != patch)
-        continue;
+      if (surface_.patch_of_pair_[std::size_t(boundary_.pair[std::size_t(point)])] != patch) continue;
       boundary_.visit_own_nodes(point, [&](Index node, double weight) {
         const auto slot = slot_of_.find(node);
-        if (slot != slot_of_.end())
-          of_points_.emplace_back(static_cast<int>(point), static_cast<int>(slot->second), weight);
+        if (slot != slot_of_.end()) of_points_.emplace_back(int(point), int(slot->second), weight);
       });
     }
   }
 
   void finish(const std::vector<std::vector<Facet>>& facets) {
-    surface_.positions_.resize(surface_.dimension_, static_cast<Index>(geometry_nodes_.size()));
+    surface_.positions_.resize(surface_.dimension_, Index(geometry_nodes_.size()));
     for (std::size_t k = 0; k < geometry_nodes_.size(); ++k)
-      surface_.positions_.col(static_cast<Index>(k)) = body_.mesh->nodes.col(geometry_nodes_[k]);
-    surface_.node_positions_.resize(surface_.dimension_, static_cast<Index>(surface_.slots_.size()));
+      surface_.positions_.col(Index(k)) = body_.mesh->nodes.col(geometry_nodes_[k]);
+    surface_.node_positions_.resize(surface_.dimension_, Index(surface_.slots_.size()));
     for (std::size_t k = 0; k < surface_.slots_.size(); ++k)
-      surface_.node_positions_.col(static_cast<Index>(k)) = body_.space->nodes.col(surface_.slots_[k].node);
+      surface_.node_positions_.col(Index(k)) = body_.space->nodes.col(surface_.slots_[k].node);
     for (const std::vector<Facet>& of_pair : facets) {
       surface_.first_facet_.push_back(surface_.facets_.size());
       for (Facet facet : of_pair) {
         facet.area = surface_.measure(facet, nullptr).whole();
         const Index count = surface_.shapes_[facet.shape].displacement.node_count();
-        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-          surface_.slots_[surface_.slots_of_facets_[facet.first_slot + k]].area +=
-              facet.area / static_cast<double>(count);
+        for (std::size_t k = 0; k < std::size_t(count); ++k)
+          surface_.slots_[surface_.slots_of_facets_[facet.first_slot + k]].area += facet.area / double(count);
         surface_.facets_.push_back(facet);
       }
     }
     surface_.first_facet_.push_back(surface_.facets_.size());
-    surface_.slots_of_points_.resize(boundary_.size(), static_cast<Index>(surface_.slots_.size()));
+    surface_.slots_of_points_.resize(boundary_.size(), Index(surface_.slots_.size()));
     surface_.slots_of_points_.setFromTriplets(of_points_.begin(), of_points_.end());
   }
 
@@ -174,28 +170,27 @@ FacetArea ContactSurface::measure(const Facet& facet, const Vector* displacement
   const FacetShape& shape = shapes_[facet.shape];
   Places positions = Places::Zero(), motions = Places::Zero();
   for (Index k = 0; k < shape.geometry.node_count(); ++k)
-    positions.col(k).head(dimension_) = positions_.col(static_cast<Index>(facet.first_position) + k);
+    positions.col(k).head(dimension_) = positions_.col(Index(facet.first_position) + k);
   for (Index k = 0; displacement != nullptr && k < shape.displacement.node_count(); ++k) {
-    const std::size_t slot = slots_of_facets_[facet.first_slot + static_cast<std::size_t>(k)];
+    const std::size_t slot = slots_of_facets_[facet.first_slot + std::size_t(k)];
     motions.col(k).head(dimension_) = displacement->segment(slots_[slot].node * dimension_, dimension_);
   }
   return {shape, positions, motions, axisymmetric_};
 }
 
 void ContactSurface::find_stretch(const Vector& displacement, Vector& area_of_slots, Vector& stretch) const {
-  area_of_slots.setZero(static_cast<Index>(slots_.size()));
+  area_of_slots.setZero(Index(slots_.size()));
   for (const Facet& facet : facets_) {
-    const auto count = static_cast<std::size_t>(shapes_[facet.shape].displacement.node_count());
-    const double share = measure(facet, &displacement).whole() / static_cast<double>(count);
-    for (std::size_t k = 0; k < count; ++k)
-      area_of_slots[static_cast<Index>(slots_of_facets_[facet.first_slot + k])] += share;
+    const auto count = std::size_t(shapes_[facet.shape].displacement.node_count());
+    const double share = measure(facet, &displacement).whole() / double(count);
+    for (std::size_t k = 0; k < count; ++k) area_of_slots[Index(slots_of_facets_[facet.first_slot + k])] += share;
   }
   stretch.setOnes(slots_of_points_.rows());
   for (Index point = 0; point < stretch.size(); ++point) {
     double now = 0.0, before = 0.0;
     for (SparseRowMatrix::InnerIterator entry(slots_of_points_, point); entry; ++entry) {
       now += std::abs(entry.value()) * area_of_slots[entry.col()];
-      before += std::abs(entry.value()) * slots_[static_cast<std::size_t>(entry.col())].area;
+      before += std::abs(entry.value()) * slots_[std::size_t(entry.col())].area;
     }
     if (before > 0.0) stretch[point] = now / before;
   }
@@ -204,18 +199,16 @@ void ContactSurface::find_stretch(const Vector& displacement, Vector& area_of_sl
 /// Determines the states of the nodes of a pair's patch. Each rank contributes its own points.
 void ContactSurface::find_states(int pair, const ContactView& view, Work& work) const {
   const ContactBoundary& boundary = view.boundary;
-  const auto patch = static_cast<std::size_t>(patch_of_pair_[static_cast<std::size_t>(pair)]);
+  const auto patch = std::size_t(patch_of_pair_[std::size_t(pair)]);
   const std::size_t first = first_slot_of_patch_[patch], last = first_slot_of_patch_[patch + 1];
   constexpr Index numbers = 5;  // pressure, number of open points, number of points, sum of the gaps, number of gaps
   // Ranks sum their numbers per node.
   const bool several = view.ranks.are_several();
-  const auto offset = [&](std::size_t slot) {
-    return numbers * (several ? slots_[slot].node : static_cast<Index>(slot - first));
-  };
-  work.exchanged.setZero(numbers * (several ? nodes_ : static_cast<Index>(last - first)));
+  const auto offset = [&](std::size_t slot) { return numbers * (several ? slots_[slot].node : Index(slot - first)); };
+  work.exchanged.setZero(numbers * (several ? nodes_ : Index(last - first)));
   for (const auto& [entry, node, slot] : entries_of_patch_[patch]) {
     if (slot < 0 && !several) continue;
-    double* const sums = work.exchanged.data() + (several ? numbers * node : offset(static_cast<std::size_t>(slot)));
+    double* const sums = work.exchanged.data() + (several ? numbers * node : offset(std::size_t(slot)));
     sums[0] = view.nominal_pressure[entry];
     sums[3] = view.gap[entry];
     sums[4] = 1.0;
@@ -226,7 +219,7 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
       sums[1] += closed ? 0.0 : 1.0;
       sums[2] += 1.0;
     };
-    const Index own = boundary.own_point[static_cast<std::size_t>(entry)];
+    const Index own = boundary.own_point[std::size_t(entry)];
     if (own >= 0) add(own);
     if (own != -1) continue;
     boundary.visit_recovery(entry, [&](Index point, double weight) {
@@ -235,11 +228,11 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
   }
   if (several) view.ranks.accumulate(work.exchanged);
   work.state.resize(slots_.size());
-  work.pressure.resize(static_cast<Index>(slots_.size()));
-  work.gap.resize(static_cast<Index>(slots_.size()));
+  work.pressure.resize(Index(slots_.size()));
+  work.gap.resize(Index(slots_.size()));
   for (std::size_t slot = first; slot < last; ++slot) {
     const double* const sums = work.exchanged.data() + offset(slot);
-    const auto at = static_cast<Index>(slot);
+    const auto at = Index(slot);
     work.pressure[at] = sums[0];
     work.gap[at] = sums[3] / sums[4];  // NaN if no rank has it
     work.state[slot] = sums[2] == 0.0 ? node_unknown : sums[0] > 0.0 && sums[1] == 0.0 ? node_pressed : node_open;
@@ -248,7 +241,7 @@ void ContactSurface::find_states(int pair, const ContactView& view, Work& work) 
 
 /// Returns the fraction in contact of the edge from a node in contact to an open one; both are numbers of slots.
 double ContactSurface::covered(const Facet& facet, std::size_t from, std::size_t to, const Work& work) const {
-  const auto inner = static_cast<Index>(from), outer = static_cast<Index>(to);
+  const auto inner = Index(from), outer = Index(to);
   const double gap = work.gap[outer];
   if (std::isnan(gap) || work.state[to] == node_unknown) return 0.0;
   if (!(gap > 0.0)) return 1.0;
@@ -261,7 +254,7 @@ double ContactSurface::part_of_segment(const Facet& facet, const Work& work, con
   double sum = 0.0;
   for (std::size_t k = 0; k + 1 < shapes_[facet.shape].border.size(); ++k) {
     const std::size_t here = border_slot(facet, k), next = border_slot(facet, k + 1);
-    const double from = at(0, static_cast<Index>(k)), to = at(0, static_cast<Index>(k) + 1);
+    const double from = at(0, Index(k)), to = at(0, Index(k) + 1);
     const bool presses = work.state[here] == node_pressed, next_presses = work.state[next] == node_pressed;
     if (presses && next_presses) {
       sum += integral.segment(from, to);
@@ -281,8 +274,8 @@ double ContactSurface::part_of_polygon(const Facet& facet, const Work& work, con
   std::size_t found = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t here = border_slot(facet, k), next = border_slot(facet, (k + 1) % count);
-    const Eigen::Vector2d at = shape.border_points.col(static_cast<Index>(k));
-    const Eigen::Vector2d way = shape.border_points.col(static_cast<Index>((k + 1) % count)) - at;
+    const Eigen::Vector2d at = shape.border_points.col(Index(k));
+    const Eigen::Vector2d way = shape.border_points.col(Index((k + 1) % count)) - at;
     const bool presses = work.state[here] == node_pressed;
     if (presses) corners[found++] = at;
     if (presses == (work.state[next] == node_pressed)) continue;
@@ -316,8 +309,7 @@ void ContactSurface::add_part(const Facet& facet, const ContactView& view, const
 ContactSurface::Area ContactSurface::pressed_area(int pair, const ContactView& view, Work& work) const {
   find_states(pair, view, work);
   Area sum;
-  for (std::size_t k = first_facet_[static_cast<std::size_t>(pair)];
-       k < first_facet_[static_cast<std::size_t>(pair) + 1]; ++k)
+  for (std::size_t k = first_facet_[std::size_t(pair)]; k < first_facet_[std::size_t(pair) + 1]; ++k)
     add_part(facets_[k], view, work, sum);
   return sum;
 }

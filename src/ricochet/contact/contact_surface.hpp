@@ -79,7 +79,7 @@ class ContactSurface {
   [[nodiscard]] FacetArea measure(const Facet& facet, const Vector* displacement) const;
   void find_states(int pair, const ContactView& view, Work& work) const;
   [[nodiscard]] std::size_t border_slot(const Facet& facet, std::size_t k) const {
-    return slots_of_facets_[facet.first_slot + static_cast<std::size_t>(shapes_[facet.shape].border[k])];
+    return slots_of_facets_[facet.first_slot + std::size_t(shapes_[facet.shape].border[k])];
   }
   [[nodiscard]] double covered(const Facet& facet, std::size_t from, std::size_t to, const Work& work) const;
   [[nodiscard]] double part_of_segment(const Facet& facet, const Work& work, const FacetArea& integral) const;

@@ -100,12 +100,12 @@ class CurvedContact final : public ContactGeometry {
                       correction.data());
       const auto add = [&](const SparseRowMatrix& matrix, Index row, double reaction) {
         const double* const has = matrix.valuePtr() + matrix.outerIndexPtr()[row + 1] - d;
-        for (Index k = 0; k < d; ++k) correction[static_cast<std::size_t>(d + k)] -= reaction * has[k];
+        for (Index k = 0; k < d; ++k) correction[std::size_t(d + k)] -= reaction * has[k];
       };
       add(rows.gap_operator, point.number, normal[point.number]);
       for (Index row = point.number * (d - 1); tangential.size() > 0 && row < (point.number + 1) * (d - 1); ++row)
         add(rows.tangential_trace, row, -tangential[row]);
-      for (Index k = 0; k < d; ++k) force[body->rotation_node() * d + k] += correction[static_cast<std::size_t>(d + k)];
+      for (Index k = 0; k < d; ++k) force[body->rotation_node() * d + k] += correction[std::size_t(d + k)];
     }
   }
 
@@ -131,7 +131,7 @@ class CurvedContact final : public ContactGeometry {
     for (const CurvedContactData::Point& point : data_.points) {
       write_rows(point, normals.col(point.number), rows);
       if (data_.obstacles[point.obstacle]->free_motion() != nullptr)
-        rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+        rows.revision[std::size_t(point.number)] = revision_;
     }
     Index at = 0;
     visit_body_entries(rows, [&](double* values) {
@@ -173,7 +173,7 @@ class CurvedContact final : public ContactGeometry {
   /// Writes the tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.
   void write_rows(const CurvedContactData::Point& point, const SpaceVector& normal, ContactRows& rows) const {
     if (rows.normals.col(point.number) == normal) return;
-    rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+    rows.revision[std::size_t(point.number)] = revision_;
     write_directions(point.number, normal, point.is_free, data_.trace, rows);
     double* gap = rows.gap_operator.valuePtr() + rows.gap_operator.outerIndexPtr()[point.number];
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
@@ -184,7 +184,7 @@ class CurvedContact final : public ContactGeometry {
   /// Writes the entries for a free rigid body: minus the motion of its material point. Its nodes are the last of a row.
   void write_body(const CurvedContactData::Point& point, const FreeMotion& body, const SpaceVector& arm,
                   const Pose::Rotation& axes, ContactRows& rows) const {
-    rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+    rows.revision[std::size_t(point.number)] = revision_;
     const Index d = arm.size(), entries = 2 * d;
     const auto write = [&](const SpaceVector& direction, SparseRowMatrix& matrix, Index row) {
       double* const values = matrix.valuePtr() + matrix.outerIndexPtr()[row + 1] - entries;
@@ -193,9 +193,8 @@ class CurvedContact final : public ContactGeometry {
     write(rows.normal(point.number), rows.gap_operator, point.number);
     for (Index j = 0; j < d - 1; ++j) {
       const Index row = point.number * (d - 1) + j;
-      const bool slips = rows.slips[static_cast<std::size_t>(row)] != 0;
-      write(slips ? SpaceVector(rows.tangents[static_cast<std::size_t>(point.number)].col(j))
-                  : SpaceVector(SpaceVector::Zero(d)),
+      const bool slips = rows.slips[std::size_t(row)] != 0;
+      write(slips ? SpaceVector(rows.tangents[std::size_t(point.number)].col(j)) : SpaceVector(SpaceVector::Zero(d)),
             rows.tangential_trace, row);
     }
   }

@@ -86,7 +86,7 @@ class RotatingPairs final : public ContactGeometry {
     Vector result(row_value_count());
     Index first = 0;
     for (const Point& point : data_.points) {
-      const auto count = static_cast<Index>(point.nodes.size()) * dimension();
+      const auto count = Index(point.nodes.size()) * dimension();
       result.segment(first, count) = Eigen::Map<const Vector>(row_begin(point, rows), count);
       first += count;
     }
@@ -94,7 +94,7 @@ class RotatingPairs final : public ContactGeometry {
   }
   [[nodiscard]] Index row_value_count() const override {
     Index count = 0;
-    for (const Point& point : data_.points) count += static_cast<Index>(point.nodes.size()) * dimension();
+    for (const Point& point : data_.points) count += Index(point.nodes.size()) * dimension();
     return count;
   }
 
@@ -103,7 +103,7 @@ class RotatingPairs final : public ContactGeometry {
     rows.gap = gap;
     Index first = 0;
     for (const Point& point : data_.points) {
-      const auto count = static_cast<Index>(point.nodes.size()) * dimension();
+      const auto count = Index(point.nodes.size()) * dimension();
       row_ = row_values.segment(first, count);
       write_rows(point, normals.col(point.number), row_, rows);
       first += count;
@@ -144,7 +144,7 @@ class RotatingPairs final : public ContactGeometry {
   /// Computes G of the step, and its direction in normal_; middle_ must be the middle of the step.
   const Vector& row_of_step(const Point& point, const Vector& before, const Vector& after) const {
     const Index d = dimension();
-    row_.setZero(static_cast<Index>(point.nodes.size()) * d);
+    row_.setZero(Index(point.nodes.size()) * d);
     const auto add = [&](Index node, const Vector3& value) {
       const auto at = std::ranges::lower_bound(point.nodes, node) - point.nodes.begin();
       row_.segment(at * d, d) += value.head(d);
@@ -170,7 +170,7 @@ class RotatingPairs final : public ContactGeometry {
     Eigen::Map<Vector> gap_row(row_begin(point, rows), row.size());
     if (gap_row == row) return;
     gap_row = row;
-    rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+    rows.revision[std::size_t(point.number)] = revision_;
     write_directions(point.number, normal, point.is_free, data_.trace, rows);
   }
 

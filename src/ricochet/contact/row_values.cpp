@@ -106,12 +106,12 @@ void PointCopier::copy(const ContactRows& from, ContactRows& to, Index point) {
   copy_rows(from.gap_operator, to.gap_operator, point, point + 1, gap_);
   copy_rows(from.tangential_trace, to.tangential_trace, first, last, slip_);
   to.normals.col(point) = from.normals.col(point);
-  to.tangents[static_cast<std::size_t>(point)] = from.tangents[static_cast<std::size_t>(point)];
-  for (Index k = first; k < last; ++k) to.slips[static_cast<std::size_t>(k)] = from.slips[static_cast<std::size_t>(k)];
+  to.tangents[std::size_t(point)] = from.tangents[std::size_t(point)];
+  for (Index k = first; k < last; ++k) to.slips[std::size_t(k)] = from.slips[std::size_t(k)];
 }
 
 void PointCopier::finish(ContactRows& to) {
-  changed_.resize(static_cast<std::size_t>(to.tangential_trace.rows() + to.gap_operator.rows()));
+  changed_.resize(std::size_t(to.tangential_trace.rows() + to.gap_operator.rows()));
   gap_.write(to.gap_operator, changed_);
   slip_.write(to.tangential_trace, changed_);
 }

@@ -23,22 +23,22 @@ bool RowWriter::write(SparseRowMatrix& matrix, std::vector<char>& changed) {
   const bool any = !rows_.empty();
   if (any) {
     std::ranges::sort(rows_, {}, &Row::number);
-    std::size_t count = static_cast<std::size_t>(matrix.nonZeros());
+    std::size_t count = std::size_t(matrix.nonZeros());
     for (const Row& row : rows_) {
       count += row.end - row.begin;
-      count -= static_cast<std::size_t>(matrix.outerIndexPtr()[row.number + 1] - matrix.outerIndexPtr()[row.number]);
-      changed[static_cast<std::size_t>(row.number)] = 1;
+      count -= std::size_t(matrix.outerIndexPtr()[row.number + 1] - matrix.outerIndexPtr()[row.number]);
+      changed[std::size_t(row.number)] = 1;
     }
     next_.resize(matrix.rows(), matrix.cols());
-    next_.resizeNonZeros(static_cast<Index>(count));
+    next_.resizeNonZeros(Index(count));
     auto row = rows_.begin();
     Index at = 0;
     const auto put = [&](Index column, double value) {
-      next_.innerIndexPtr()[at] = static_cast<int>(column);
+      next_.innerIndexPtr()[at] = int(column);
       next_.valuePtr()[at++] = value;
     };
     for (Index number = 0; number < matrix.rows(); ++number) {
-      next_.outerIndexPtr()[number] = static_cast<int>(at);
+      next_.outerIndexPtr()[number] = int(at);
       if (row != rows_.end() && row->number == number) {
         for (std::size_t k = row->begin; k < row->end; ++k) put(entries_[k].first, entries_[k].second);
         ++row;
@@ -46,7 +46,7 @@ bool RowWriter::write(SparseRowMatrix& matrix, std::vector<char>& changed) {
       }
       for (SparseRowMatrix::InnerIterator entry(matrix, number); entry; ++entry) put(entry.col(), entry.value());
     }
-    next_.outerIndexPtr()[matrix.rows()] = static_cast<int>(at);
+    next_.outerIndexPtr()[matrix.rows()] = int(at);
     std::swap(matrix, next_);
   }
   rows_.clear();

@@ -68,19 +68,19 @@ void Communicator::swap(std::vector<Message>& messages) const {
   requests.resize(2 * messages.size());
   for (std::size_t i = 0; i < messages.size(); ++i) {
     Message& message = messages[i];
-    MPI_Irecv(message.in.data(), static_cast<int>(message.in.size()), MPI_DOUBLE, message.rank, message_tag,
-              handle_->ranks, &requests[2 * i]);
-    MPI_Isend(message.out.data(), static_cast<int>(message.out.size()), MPI_DOUBLE, message.rank, message_tag,
-              handle_->ranks, &requests[2 * i + 1]);
+    MPI_Irecv(message.in.data(), int(message.in.size()), MPI_DOUBLE, message.rank, message_tag, handle_->ranks,
+              &requests[2 * i]);
+    MPI_Isend(message.out.data(), int(message.out.size()), MPI_DOUBLE, message.rank, message_tag, handle_->ranks,
+              &requests[2 * i + 1]);
   }
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
 void Communicator::send(int rank, std::span<const char> bytes) const {
   do {
     const std::span<const char> piece = bytes.first(std::min(bytes.size(), largest_piece));
     bytes = bytes.subspan(piece.size());
-    MPI_Send(piece.data(), static_cast<int>(piece.size()), MPI_CHAR, rank, message_tag, handle_->ranks);
+    MPI_Send(piece.data(), int(piece.size()), MPI_CHAR, rank, message_tag, handle_->ranks);
   } while (!bytes.empty());
 }
 
@@ -92,7 +92,7 @@ std::vector<char> Communicator::receive(int rank) const {
     MPI_Probe(rank, message_tag, handle_->ranks, &status);
     MPI_Get_count(&status, MPI_CHAR, &length);
     const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(length));
+    bytes.resize(before + std::size_t(length));
     MPI_Recv(bytes.data() + before, length, MPI_CHAR, rank, message_tag, handle_->ranks, MPI_STATUS_IGNORE);
     if (length == 0) return bytes;
   }
@@ -108,14 +108,14 @@ std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<st
   std::vector<std::vector<Number>> result(static_cast<std::size_t>(size_));
   std::vector<MPI_Request> requests;
   for (int to = 0; to < size_; ++to) {
-    const std::vector<Number>& numbers = to_each[static_cast<std::size_t>(to)];
+    const std::vector<Number>& numbers = to_each[std::size_t(to)];
     if (to == rank_) {
-      result[static_cast<std::size_t>(to)] = numbers;
+      result[std::size_t(to)] = numbers;
       continue;
     }
     for (std::size_t begin = 0; begin < numbers.size(); begin += largest_piece / sizeof(Number)) {
       const std::size_t count = std::min(numbers.size() - begin, largest_piece / sizeof(Number));
-      MPI_Issend(numbers.data() + begin, static_cast<int>(count), type, to, tag, handle_->ranks,
+      MPI_Issend(numbers.data() + begin, int(count), type, to, tag, handle_->ranks,
                  &requests.emplace_back(MPI_REQUEST_NULL));
     }
   }
@@ -127,12 +127,12 @@ std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<st
     if (is_there != 0) {
       int count = 0;
       MPI_Get_count(&status, type, &count);
-      std::vector<Number>& numbers = result[static_cast<std::size_t>(status.MPI_SOURCE)];
+      std::vector<Number>& numbers = result[std::size_t(status.MPI_SOURCE)];
       const std::size_t before = numbers.size();
-      numbers.resize(before + static_cast<std::size_t>(count));
+      numbers.resize(before + std::size_t(count));
       MPI_Recv(numbers.data() + before, count, type, status.MPI_SOURCE, tag, handle_->ranks, MPI_STATUS_IGNORE);
     } else if (are_received == 0) {
-      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &are_received, MPI_STATUSES_IGNORE);
+      MPI_Testall(int(requests.size()), requests.data(), &are_received, MPI_STATUSES_IGNORE);
       if (are_received != 0) MPI_Ibarrier(handle_->ranks, &all_received);
     } else {
       MPI_Test(&all_received, &is_end, MPI_STATUS_IGNORE);
@@ -151,8 +151,8 @@ std::vector<std::vector<double>> Communicator::exchange(const std::vector<std::v
 }
 
 std::vector<double> Communicator::gather(std::span<const double> values) const {
-  std::vector<double> result(values.size() * static_cast<std::size_t>(size_));
-  const int count = static_cast<int>(values.size());
+  std::vector<double> result(values.size() * std::size_t(size_));
+  const int count = int(values.size());
   MPI_Allgather(values.data(), count, MPI_DOUBLE, result.data(), count, MPI_DOUBLE, handle_->ranks);
   return result;
 }

@@ -19,20 +19,18 @@ class Division {
   [[nodiscard]] const std::vector<int>& rank_of_cell() const { return rank_of_cell_; }
   /// Returns the ranks that have a node, ascending. The first of them owns the node.
   [[nodiscard]] std::span<const int> ranks_of(Index node) const {
-    const auto at = static_cast<std::size_t>(node);
+    const auto at = std::size_t(node);
     return {ranks_.data() + begin_[at], ranks_.data() + begin_[at + 1]};
   }
   [[nodiscard]] int owner(Index node) const { return ranks_of(node).front(); }
   [[nodiscard]] bool has(int rank, Index node) const;
   /// Returns the rank to which an entry of a matrix belongs: the first that has both nodes; −1 if none.
   [[nodiscard]] int rank_of_pair(Index one, Index other) const;
-  [[nodiscard]] int rank_of_point(Index point) const { return rank_of_point_[static_cast<std::size_t>(point)]; }
+  [[nodiscard]] int rank_of_point(Index point) const { return rank_of_point_[std::size_t(point)]; }
   /// Returns the points of a rank, ascending.
   [[nodiscard]] std::vector<Index> points_of(int rank) const;
   /// Returns the nodes of a rank that are not on its cells.
-  [[nodiscard]] const std::vector<Index>& more_nodes(int rank) const {
-    return more_nodes_[static_cast<std::size_t>(rank)];
-  }
+  [[nodiscard]] const std::vector<Index>& more_nodes(int rank) const { return more_nodes_[std::size_t(rank)]; }
 
  private:
   void add_nodes(const std::vector<std::vector<Index>>& more);

@@ -84,8 +84,7 @@ void transfer_geometry(Archive& archive, const std::vector<const Obstacle*>& of_
   }
   archive.all(obstacles, data);
   if (!archive.reads()) return;
-  for (const Index number : obstacles)
-    data.obstacles.push_back(model.obstacles.at(static_cast<std::size_t>(number)).get());
+  for (const Index number : obstacles) data.obstacles.push_back(model.obstacles.at(std::size_t(number)).get());
   contact.geometry = make_curved_contact(std::move(data));
 }
 
@@ -103,7 +102,7 @@ void transfer_supports(Archive& archive, const Case& input, Supports& supports) 
   archive.all(dofs, sections);
   if (!archive.reads()) return;
   for (std::size_t i = 0; i < dofs.size(); ++i) {
-    const auto section = static_cast<std::size_t>(sections[i]);
+    const auto section = std::size_t(sections[i]);
     supports.add(dofs[i], section < input.supports.size() ? input.supports[section].value : Expression());
   }
   supports.finish();

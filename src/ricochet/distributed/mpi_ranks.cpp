@@ -10,7 +10,7 @@ void WorldRanks::reduce(std::span<double> values, std::span<const Reduction> by)
   const std::vector<double> all = ranks_.gather(values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     double result = all[i];
-    for (std::size_t rank = 1; rank < static_cast<std::size_t>(ranks_.size()); ++rank) {
+    for (std::size_t rank = 1; rank < std::size_t(ranks_.size()); ++rank) {
       const double value = all[rank * values.size() + i];
       switch (by[i]) {
         case Reduction::sum:

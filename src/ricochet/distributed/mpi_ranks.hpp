@@ -30,9 +30,9 @@ class WorldRanks : public Ranks {
   void count(const ForEach<Number>& to_each) const {
     ++traffic_.reductions;
     for (std::size_t rank = 0; rank < to_each.size(); ++rank) {
-      if (to_each[rank].empty() || static_cast<int>(rank) == ranks_.rank()) continue;
+      if (to_each[rank].empty() || int(rank) == ranks_.rank()) continue;
       ++traffic_.messages;
-      traffic_.bytes += static_cast<std::int64_t>(sizeof(Number) * to_each[rank].size());
+      traffic_.bytes += std::int64_t(sizeof(Number) * to_each[rank].size());
     }
   }
 
@@ -50,9 +50,7 @@ class MpiRanks final : public WorldRanks {
   [[nodiscard]] Traffic traffic() const override { return WorldRanks::traffic() += nodes_.traffic(); }
   [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
   [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
-  [[nodiscard]] std::int64_t number_of(Index node) const override {
-    return nodes_.numbers()[static_cast<std::size_t>(node)];
-  }
+  [[nodiscard]] std::int64_t number_of(Index node) const override { return nodes_.numbers()[std::size_t(node)]; }
 
  private:
   const NodeExchange& nodes_;

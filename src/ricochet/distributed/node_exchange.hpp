@@ -28,7 +28,7 @@ class NodeExchange {
   [[nodiscard]] bool is_owned(Index node) const { return !std::ranges::binary_search(not_owned_, node); }
   /// Returns the number of each node in the whole body.
   [[nodiscard]] const std::vector<std::int64_t>& numbers() const { return numbers_; }
-  [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
+  [[nodiscard]] Index owned_count() const { return nodes_ - Index(not_owned_.size()); }
   [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
   [[nodiscard]] const Traffic& traffic() const { return traffic_; }
 

@@ -23,10 +23,10 @@ struct Adjacency {
 };
 
 Adjacency adjacency_of(const Mesh& mesh) {
-  const auto count = static_cast<std::size_t>(mesh.node_count());
+  const auto count = std::size_t(mesh.node_count());
   std::vector<Index> begin(count + 1, 0);
   each_cell(mesh.cells, [&](Index, std::span<const Index> nodes) {
-    for (const Index node : nodes) ++begin[static_cast<std::size_t>(node) + 1];
+    for (const Index node : nodes) ++begin[std::size_t(node) + 1];
   });
   for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
   std::vector<const Index*> cell(static_cast<std::size_t>(begin.back()));
@@ -34,21 +34,21 @@ Adjacency adjacency_of(const Mesh& mesh) {
   std::vector<Index> next(begin.begin(), begin.end() - 1);
   each_cell(mesh.cells, [&](Index, std::span<const Index> nodes) {
     for (const Index node : nodes) {
-      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++);
+      const auto at = std::size_t(next[std::size_t(node)]++);
       cell[at] = nodes.data();
-      length[at] = static_cast<int>(nodes.size());
+      length[at] = int(nodes.size());
     }
   });
   Adjacency result;
   std::vector<Index> found;
   for (std::size_t node = 0; node < count; ++node) {
     found.clear();
-    for (auto at = static_cast<std::size_t>(begin[node]); at < static_cast<std::size_t>(begin[node + 1]); ++at)
+    for (auto at = std::size_t(begin[node]); at < std::size_t(begin[node + 1]); ++at)
       found.insert(found.end(), cell[at], cell[at] + length[at]);
     std::ranges::sort(found);
     found.erase(std::unique(found.begin(), found.end()), found.end());
     for (const Index other : found) {
-      if (other != static_cast<Index>(node)) result.neighbour.push_back(static_cast<PetscInt>(other));
+      if (other != Index(node)) result.neighbour.push_back(static_cast<PetscInt>(other));
     }
     result.begin.push_back(static_cast<PetscInt>(result.neighbour.size()));
   }
@@ -104,8 +104,8 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
     std::mt19937_64 generator(seed);
     for (std::size_t i = 0; i < result.size(); ++i) {
       // The first cells are dealt out one by one, so that every rank has a cell.
-      const auto any = static_cast<int>(generator() % static_cast<std::uint64_t>(ranks));
-      result[i] = i < static_cast<std::size_t>(ranks) ? static_cast<int>(i) : any;
+      const auto any = int(generator() % std::uint64_t(ranks));
+      result[i] = i < std::size_t(ranks) ? int(i) : any;
     }
     return result;
   }
@@ -115,24 +115,24 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
     int best = -1;
     std::ptrdiff_t most = 0;
     for (const Index node : nodes) {
-      const int own = part[static_cast<std::size_t>(node)];
+      const int own = part[std::size_t(node)];
       const std::ptrdiff_t votes =
-          std::ranges::count_if(nodes, [&](Index other) { return part[static_cast<std::size_t>(other)] == own; });
+          std::ranges::count_if(nodes, [&](Index other) { return part[std::size_t(other)] == own; });
       if (votes > most || (votes == most && own < best)) {
         most = votes;
         best = own;
       }
     }
-    result[static_cast<std::size_t>(cell)] = best;
-    ++count[static_cast<std::size_t>(best)];
+    result[std::size_t(cell)] = best;
+    ++count[std::size_t(best)];
   });
   // A part of few nodes may win no cell and then gets one of the largest part.
   for (std::size_t empty = 0; empty < count.size(); ++empty) {
     if (count[empty] > 0) continue;
-    const auto largest = static_cast<int>(std::ranges::max_element(count) - count.begin());
+    const auto largest = int(std::ranges::max_element(count) - count.begin());
     const auto cell = std::ranges::find(result, largest);
-    *cell = static_cast<int>(empty);
-    --count[static_cast<std::size_t>(largest)];
+    *cell = int(empty);
+    --count[std::size_t(largest)];
     ++count[empty];
   }
   return result;

@@ -23,10 +23,10 @@ Numbering number_nodes(Index count, int d, const Ranks& ranks) {
   for (Index node = 0; node < count; ++node) {
     if (ranks.is_owned(node)) result.own.push_back(node);
   }
-  const auto own = static_cast<double>(result.own.size());
+  const auto own = double(result.own.size());
   const Ranks::ForEach<double> counts = ranks.all_gather({own});
   double next = 0.0;
-  for (int rank = 0; rank < ranks.rank(); ++rank) next += counts[static_cast<std::size_t>(rank)].front();
+  for (int rank = 0; rank < ranks.rank(); ++rank) next += counts[std::size_t(rank)].front();
   // The owner of a node sends its number to the other ranks.
   Vector numbers = Vector::Zero(count * d);
   for (const Index node : result.own) numbers[node * d] = next++;
@@ -52,9 +52,9 @@ class PetscPreconditioner final : public Preconditioner {
  public:
   PetscPreconditioner(const std::string& name, const SparseMatrix& part, const std::vector<char>& solved,
                       const Points& nodes, const Ranks& ranks)
-      : ranks_(ranks), d_(static_cast<int>(nodes.rows())), numbering_(number_nodes(nodes.cols(), d_, ranks)) {
+      : ranks_(ranks), d_(int(nodes.rows())), numbering_(number_nodes(nodes.cols(), d_, ranks)) {
     for (Index dof = 0; dof < part.cols(); ++dof) {
-      if (solved[static_cast<std::size_t>(dof)] == 0) unsolved_.push_back(dof);
+      if (solved[std::size_t(dof)] == 0) unsolved_.push_back(dof);
     }
     const std::string& options = preconditioner_registry().find(name).type.petsc_options;
     check(set_up(options, entries_of(part, solved), nodes), name);
@@ -82,7 +82,7 @@ class PetscPreconditioner final : public Preconditioner {
   }
 
   [[nodiscard]] PetscInt number_of(Index dof) const {
-    return numbering_.of_node[static_cast<std::size_t>(dof / d_)] * d_ + static_cast<PetscInt>(dof % d_);
+    return numbering_.of_node[std::size_t(dof / d_)] * d_ + static_cast<PetscInt>(dof % d_);
   }
 
   [[nodiscard]] Entries entries_of(const SparseMatrix& part, const std::vector<char>& solved) const {
@@ -90,12 +90,12 @@ class PetscPreconditioner final : public Preconditioner {
     constexpr double small = 1e-4;
     const double shift = small * ranks_.maximum(part.cols() > 0 ? part.diagonal().maxCoeff() : 0.0);
     for (Index column = 0; column < part.cols(); ++column) {
-      if (solved[static_cast<std::size_t>(column)] == 0) {
+      if (solved[std::size_t(column)] == 0) {
         if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), shift);
         continue;
       }
       for (SparseMatrix::InnerIterator entry(part, column); entry; ++entry) {
-        if (solved[static_cast<std::size_t>(entry.row())] != 0)
+        if (solved[std::size_t(entry.row())] != 0)
           entries.add(number_of(entry.row()), number_of(column), entry.value());
       }
     }

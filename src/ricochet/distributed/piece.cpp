@@ -25,10 +25,10 @@ Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& is
     cut_block.shape = block.shape;
     cut_block.nodes_per_cell = block.nodes_per_cell;
     for (Index i = 0; i < block.size(); ++i, ++number) {
-      if (is_selected[static_cast<std::size_t>(number)] == 0) continue;
+      if (is_selected[std::size_t(number)] == 0) continue;
       result.numbers.push_back(number);
       cut_block.nodes.insert(cut_block.nodes.end(), block.cell(i), block.cell(i) + block.nodes_per_cell);
-      cut_block.tags.push_back(block.tags[static_cast<std::size_t>(i)]);
+      cut_block.tags.push_back(block.tags[std::size_t(i)]);
     }
   }
   return result;
@@ -37,27 +37,27 @@ Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& is
 /// Indices of nodes in an ascending list.
 class Renumbering {
  public:
-  explicit Renumbering(Index count) : index_(static_cast<std::size_t>(count), -1) {}
+  explicit Renumbering(Index count) : index_(std::size_t(count), -1) {}
 
   void mark(const std::vector<CellBlock>& blocks) {
     for (const CellBlock& block : blocks) {
-      for (const Index node : block.nodes) index_[static_cast<std::size_t>(node)] = 0;
+      for (const Index node : block.nodes) index_[std::size_t(node)] = 0;
     }
   }
-  void mark(Index node) { index_[static_cast<std::size_t>(node)] = 0; }
+  void mark(Index node) { index_[std::size_t(node)] = 0; }
   /// Returns the selected nodes, ascending.
   std::vector<Index> finish() {
     std::vector<Index> nodes;
     for (std::size_t node = 0; node < index_.size(); ++node) {
       if (index_[node] < 0) continue;
-      index_[node] = static_cast<Index>(nodes.size());
-      nodes.push_back(static_cast<Index>(node));
+      index_[node] = Index(nodes.size());
+      nodes.push_back(Index(node));
     }
     return nodes;
   }
   void apply(std::vector<CellBlock>& blocks) const {
     for (CellBlock& block : blocks) {
-      for (Index& node : block.nodes) node = index_[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = index_[std::size_t(node)];
     }
   }
 
@@ -70,7 +70,7 @@ std::vector<char> facets_of_rank(const Mesh& mesh, const std::vector<int>& rank_
   std::iota(all.begin(), all.end(), Index{0});
   std::vector<char> result;
   for (const std::vector<Index>& cells : cells_of_facets(mesh, all))
-    result.push_back(rank_of_cell[static_cast<std::size_t>(cells.front())] == rank ? 1 : 0);
+    result.push_back(rank_of_cell[std::size_t(cells.front())] == rank ? 1 : 0);
   return result;
 }
 
@@ -81,7 +81,7 @@ void cut_mesh_nodes(const Mesh& global, Mesh& mesh) {
   renumbering.apply(mesh.cells);
   renumbering.apply(mesh.facets);
   mesh.nodes = chosen_columns(global.nodes, nodes);
-  for (const Index node : nodes) mesh.node_tags.push_back(global.node_tags[static_cast<std::size_t>(node)]);
+  for (const Index node : nodes) mesh.node_tags.push_back(global.node_tags[std::size_t(node)]);
   for (const MeshPart& part : global.parts) {
     MeshPart& own = mesh.parts.emplace_back();
     own.name = part.name;
@@ -130,7 +130,7 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   renumbering.apply(piece.space.cells);
   renumbering.apply(piece.space.facets);
   piece.space.nodes = chosen_columns(space.nodes, nodes);
-  for (const Index node : nodes) piece.space.number.push_back(space.number[static_cast<std::size_t>(node)]);
+  for (const Index node : nodes) piece.space.number.push_back(space.number[std::size_t(node)]);
   piece.node_number.assign(nodes.begin(), nodes.end());
   return piece;
 }

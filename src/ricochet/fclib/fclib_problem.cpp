@@ -46,8 +46,7 @@ Matrix solve_constraints(const FclibProblem& problem) {
 }
 
 std::shared_ptr<const ContactOperator> make_operator(SparseMatrix w) {
-  const bool dense =
-      3.0 * static_cast<double>(w.nonZeros()) > static_cast<double>(w.rows()) * static_cast<double>(w.rows());
+  const bool dense = 3.0 * double(w.nonZeros()) > double(w.rows()) * double(w.rows());
   return dense ? make_dense_operator(Matrix(w)) : make_sparse_operator(std::move(w));
 }
 
@@ -60,11 +59,11 @@ struct Selection {
 
 Selection select_eligible(const ContactProblem& problem, Index dimension) {
   Selection result;
-  result.new_row.assign(static_cast<std::size_t>(problem.rows()), -1);
+  result.new_row.assign(std::size_t(problem.rows()), -1);
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index first = problem.row_offset[static_cast<std::size_t>(i)];
-    const Index size = problem.row_offset[static_cast<std::size_t>(i + 1)] - first;
+    const Index first = problem.row_offset[std::size_t(i)];
+    const Index size = problem.row_offset[std::size_t(i + 1)] - first;
     if (problem.bound(i) > 0.0) {
       throw Error(ErrorKind::invalid_input, fmt::format("point {} has a friction bound ({:g}): FCLib files support "
                                                         "Coulomb's law only, so this problem cannot be written to one",
@@ -77,7 +76,7 @@ Selection select_eligible(const ContactProblem& problem, Index dimension) {
     }
     result.points.push_back(i);
     for (Index k = 0; k < dimension; ++k) {
-      if (k < size) result.new_row[static_cast<std::size_t>(first + k)] = static_cast<Index>(result.old_row.size());
+      if (k < size) result.new_row[std::size_t(first + k)] = Index(result.old_row.size());
       result.old_row.push_back(k < size ? first + k : -1);
     }
   }
@@ -100,23 +99,23 @@ Matrix columns_of(const ContactOperator& w) {
 SparseMatrix select_matrix(const ContactOperator& w, const Selection& selection, Index dimension) {
   const Matrix known = w.dense() == nullptr && w.sparse() == nullptr ? columns_of(w) : Matrix();
   const Matrix* const dense = w.dense() != nullptr ? w.dense() : &known;
-  const auto size = static_cast<Index>(selection.old_row.size());
+  const auto size = Index(selection.old_row.size());
   SparseMatrix result(size, size);
   result.reserve(w.sparse() != nullptr ? w.sparse()->nonZeros() + size : size * size);
   for (Index column = 0; column < size; ++column) {
     result.startVec(column);
-    const Index old_column = selection.old_row[static_cast<std::size_t>(column)];
+    const Index old_column = selection.old_row[std::size_t(column)];
     if (old_column < 0) {  // a tangent that the problem does not have
-      const Index normal = selection.old_row[static_cast<std::size_t>(column - column % dimension)];
+      const Index normal = selection.old_row[std::size_t(column - column % dimension)];
       result.insertBack(column, column) = w.block(normal, 1)(0, 0);
     } else if (w.sparse() != nullptr) {
       for (SparseMatrix::InnerIterator entry(*w.sparse(), old_column); entry; ++entry) {
-        const Index row = selection.new_row[static_cast<std::size_t>(entry.row())];
+        const Index row = selection.new_row[std::size_t(entry.row())];
         if (row >= 0) result.insertBack(row, column) = entry.value();
       }
     } else {
       for (Index row = 0; row < size; ++row) {
-        const Index old = selection.old_row[static_cast<std::size_t>(row)];
+        const Index old = selection.old_row[std::size_t(row)];
         if (old >= 0 && (*dense)(old, old_column) != 0.0) result.insertBack(row, column) = (*dense)(old, old_column);
       }
     }
@@ -126,9 +125,9 @@ SparseMatrix select_matrix(const ContactOperator& w, const Selection& selection,
 }
 
 Vector select_rows(const Vector& values, const Selection& selection) {
-  Vector result = Vector::Zero(static_cast<Index>(selection.old_row.size()));
+  Vector result = Vector::Zero(Index(selection.old_row.size()));
   for (Index row = 0; row < result.size(); ++row) {
-    const Index old = selection.old_row[static_cast<std::size_t>(row)];
+    const Index old = selection.old_row[std::size_t(row)];
     if (old >= 0) result[row] = values[old];
   }
   return result;
@@ -208,10 +207,10 @@ FclibProblem make_fclib(const ContactProblem& problem, Index dimension, const Co
   result.mu.setZero(rows / dimension);
   Index padded = 0;
   for (Index i = 0; i < result.mu.size(); ++i) {
-    if (selection.old_row[static_cast<std::size_t>(i * dimension + 1)] < 0)
+    if (selection.old_row[std::size_t(i * dimension + 1)] < 0)
       ++padded;
     else
-      result.mu[i] = problem.friction_coefficient[selection.points[static_cast<std::size_t>(i)]];
+      result.mu[i] = problem.friction_coefficient[selection.points[std::size_t(i)]];
   }
   if (padded > 0) {
     result.description = fmt::format(

@@ -28,7 +28,7 @@ std::int64_t read_count(const Hdf5Reader& file, const std::string& name) {
 void check_indices(const Hdf5Reader& file, const std::string& name, const Integers& indices, std::int64_t used,
                    std::int64_t end) {
   for (std::int64_t k = 0; k < used; ++k) {
-    const std::int64_t index = indices[static_cast<std::size_t>(k)];
+    const std::int64_t index = indices[std::size_t(k)];
     if (index < 0 || index >= end)
       file.fail(name, fmt::format("entry {} is {}, outside the range 0 to {}", k, index, end - 1));
   }
@@ -75,9 +75,9 @@ SparseMatrix read_triplets(const Hdf5Reader& file, const std::string& group, std
   check_indices(file, group + "/p", row, count, rows);
   check_indices(file, group + "/i", column, count, columns);
   Triplets entries;
-  entries.reserve(static_cast<std::size_t>(count));
-  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-    entries.emplace_back(static_cast<int>(row[k]), static_cast<int>(column[k]), value[static_cast<Index>(k)]);
+  entries.reserve(std::size_t(count));
+  for (std::size_t k = 0; k < std::size_t(count); ++k)
+    entries.emplace_back(int(row[k]), int(column[k]), value[Index(k)]);
   return assemble(entries, rows, columns);
 }
 
@@ -110,7 +110,7 @@ SparseMatrix read_compressed(const Hdf5Reader& file, const std::string& group, b
   entries.reserve(indices.size());
   for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
     for (int at = starts[k]; at < starts[k + 1]; ++at) {
-      const int other = indices[static_cast<std::size_t>(at)], own = static_cast<int>(k);
+      const int other = indices[std::size_t(at)], own = int(k);
       entries.emplace_back(by_column ? other : own, by_column ? own : other, value[at]);
     }
   }

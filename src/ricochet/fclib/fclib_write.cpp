@@ -10,9 +10,9 @@ namespace {
 
 void write_triplets(Hdf5Writer& file, const std::string& group, const SparseMatrix& matrix) {
   std::vector<int> rows, columns;
-  for (int j = 0; j < static_cast<int>(matrix.cols()); ++j) {
+  for (int j = 0; j < int(matrix.cols()); ++j) {
     for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
-      rows.push_back(static_cast<int>(entry.row()));
+      rows.push_back(int(entry.row()));
       columns.push_back(j);
     }
   }
@@ -32,11 +32,11 @@ void write_compressed(Hdf5Writer& file, const std::string& group, const Compress
 void write_matrix(Hdf5Writer& file, const std::string& group, const SparseMatrix& matrix, FclibMatrixForm form) {
   SparseMatrix whole = matrix;
   whole.makeCompressed();
-  const auto count = static_cast<int>(whole.nonZeros());
+  const auto count = int(whole.nonZeros());
   file.group(group);
   file.integer(group + "/nzmax", count);
-  file.integer(group + "/m", static_cast<int>(whole.rows()));
-  file.integer(group + "/n", static_cast<int>(whole.cols()));
+  file.integer(group + "/m", int(whole.rows()));
+  file.integer(group + "/n", int(whole.cols()));
   file.integer(group + "/nz", form == FclibMatrixForm::triplet           ? count
                               : form == FclibMatrixForm::compressed_rows ? -2
                                                                          : -1);
@@ -66,7 +66,7 @@ void write_info(Hdf5Writer& file, const FclibProblem& problem) {
   if (problem.q_rounding.size() > 0) write_vector(file, "/fclib_local/info/q_rounding", problem.q_rounding);
   if (problem.points.empty()) return;
   const std::vector<int> points(problem.points.begin(), problem.points.end());
-  file.integers("/fclib_local/info/points", points.data(), static_cast<Index>(points.size()));
+  file.integers("/fclib_local/info/points", points.data(), Index(points.size()));
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ void write_info(Hdf5Writer& file, const FclibProblem& problem) {
 void write_fclib(const std::string& path, const FclibProblem& problem, FclibMatrixForm form) {
   Hdf5Writer file(path);
   file.group("/fclib_local");
-  file.integer("/fclib_local/spacedim", static_cast<int>(problem.dimension));
+  file.integer("/fclib_local/spacedim", int(problem.dimension));
   write_matrix(file, "/fclib_local/W", problem.w, form);
   const bool constrained = problem.constraint_count() > 0;
   if (constrained) {
@@ -89,7 +89,7 @@ void write_fclib(const std::string& path, const FclibProblem& problem, FclibMatr
   if (problem.solution) write_solution(file, "/solution", *problem.solution);
   if (!problem.guesses.empty()) {
     file.group("/guesses");
-    file.integer("/guesses/number_of_guesses", static_cast<int>(problem.guesses.size()));
+    file.integer("/guesses/number_of_guesses", int(problem.guesses.size()));
     for (std::size_t k = 0; k < problem.guesses.size(); ++k)
       write_solution(file, fmt::format("/guesses/{}", k + 1), problem.guesses[k]);
   }

@@ -18,7 +18,7 @@ SparseMatrix scalar_mass(const Body& body, const NodeGraph& graph, const std::ve
   for (const CellBlock& block : body.mesh->cells)
     rules.emplace_back(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body));
   return assemble<1>(body, graph, [&](std::size_t b, Index cell, std::size_t number, double* blocks) {
-    const auto material = static_cast<std::size_t>(body.cell_material[number]);
+    const auto material = std::size_t(body.cell_material[number]);
     const double density = body.materials[material].density * (weight.empty() ? 1.0 : weight[material]);
     element_mass<d>(rules[b], body.mesh->nodes, body.mesh->cells[b].cell(cell), density, blocks);
   });
@@ -30,7 +30,7 @@ SparseMatrix stiffness(const Body& body, const NodeGraph& graph, const std::vect
   for (const CellBlock& block : body.mesh->cells)
     rules.push_back(stiffness_integration(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body)));
   return assemble<d>(body, graph, [&](std::size_t b, Index cell, std::size_t number, double* blocks) {
-    const auto material_number = static_cast<std::size_t>(body.cell_material[number]);
+    const auto material_number = std::size_t(body.cell_material[number]);
     const Material& material = body.materials[material_number];
     const double factor = weight.empty() ? 1.0 : weight[material_number];
     const IsotropicElasticity law = linear_law(body, material);
@@ -50,8 +50,8 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
         product_quadrature_degree(cells.shape, body.mesh->degree, body.space->degree, axisymmetric), axisymmetric);
     for (Index cell = 0; cell < cells.size(); ++cell) {
       for (Index q = 0; q < integration.rule.weights.size(); ++q) {
-        const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
-                                     integration.geometry.gradients[static_cast<std::size_t>(q)]);
+        const auto map =
+            jacobian<d>(body.mesh->nodes, cells.cell(cell), integration.geometry.gradients[std::size_t(q)]);
         position.setZero();
         for (int k = 0; k < cells.nodes_per_cell; ++k) {
           position += body.mesh->nodes.col(cells.cell(cell)[k]) * integration.geometry.values(k, q);
@@ -116,14 +116,14 @@ SparseMatrix expand_to_components(const SparseMatrix& scalar, int dimension) {
   Index position = 0;
   for (Index column = 0; column < scalar.cols(); ++column) {
     for (int k = 0; k < dimension; ++k) {
-      result.outerIndexPtr()[column * dimension + k] = static_cast<int>(position);
+      result.outerIndexPtr()[column * dimension + k] = int(position);
       for (SparseMatrix::InnerIterator entry(scalar, column); entry; ++entry, ++position) {
-        result.innerIndexPtr()[position] = static_cast<int>(entry.row()) * dimension + k;
+        result.innerIndexPtr()[position] = int(entry.row()) * dimension + k;
         result.valuePtr()[position] = entry.value();
       }
     }
   }
-  result.outerIndexPtr()[result.cols()] = static_cast<int>(position);
+  result.outerIndexPtr()[result.cols()] = int(position);
   return result;
 }
 

@@ -41,7 +41,7 @@ struct Body {
 /// Law of a material, which has a constant tangent; throws Error(invalid_input) if the law is not linear.
 [[nodiscard]] IsotropicElasticity linear_law(const Body& body, const Material& material);
 [[nodiscard]] inline const Material& material_of(const Body& body, Index cell) {
-  return body.materials[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])];
+  return body.materials[std::size_t(body.cell_material[std::size_t(cell)])];
 }
 
 /// ∫ w ρ φ_i φ_j, one scalar per pair of nodes: the mass matrix is M = m ⊗ I. `weight` is per material (empty: 1).

@@ -68,7 +68,7 @@ class RidgeSides {
   [[nodiscard]] Eigen::Vector2d reference_point(const CellFacet& facet, int vertex) const {
     const CellShape shape = body_.space->cells[facet.block].shape;
     const std::vector<int>& nodes = facet_nodes(shape, 1)[facet.local];
-    const auto local = static_cast<int>(std::ranges::find(nodes, vertex) - nodes.begin());
+    const auto local = int(std::ranges::find(nodes, vertex) - nodes.begin());
     return reference_position(facet_shape(shape, facet.local), {local}).head<2>();
   }
   /// Outward normal, oriented by the order of the facet's corners.

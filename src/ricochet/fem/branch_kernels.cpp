@@ -30,7 +30,7 @@ struct BranchPack {
   }
   /// Index of a branch of this point in the internal strains of a cell.
   [[nodiscard]] RICOCHET_PART_OF_CALLER std::size_t offset(std::size_t branch) const {
-    return (static_cast<std::size_t>(point) * points.branches.size() + branch) * internal_components;
+    return (std::size_t(point) * points.branches.size() + branch) * internal_components;
   }
   RICOCHET_PART_OF_CALLER Strain internal(std::size_t branch) const {
     const double* const* lanes = points.internal + pack * W;

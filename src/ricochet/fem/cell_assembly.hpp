@@ -14,20 +14,20 @@ namespace ricochet {
 inline SparseMatrix matrix_on_graph(const NodeGraph& graph, int components) {
   const Index nodes = graph.node_count();
   SparseMatrix matrix(nodes * components, nodes * components);
-  const Index entries = static_cast<Index>(graph.neighbours.size()) * components * components;
+  const Index entries = Index(graph.neighbours.size()) * components * components;
   matrix.resizeNonZeros(entries);
   int* outer = matrix.outerIndexPtr();
-  outer[nodes * components] = static_cast<int>(entries);
+  outer[nodes * components] = int(entries);
   parallel_ranges(nodes, [&](Index first, Index last) {
     for (Index node = first; node < last; ++node) {
-      const Index begin = graph.offsets[static_cast<std::size_t>(node)];
-      const Index length = graph.offsets[static_cast<std::size_t>(node) + 1] - begin;
+      const Index begin = graph.offsets[std::size_t(node)];
+      const Index length = graph.offsets[std::size_t(node) + 1] - begin;
       for (int a = 0; a < components; ++a) {
         Index position = (begin * components + a * length) * components;
-        outer[node * components + a] = static_cast<int>(position);
+        outer[node * components + a] = int(position);
         for (Index k = begin; k < begin + length; ++k) {
           for (int b = 0; b < components; ++b, ++position) {
-            matrix.innerIndexPtr()[position] = graph.neighbours[static_cast<std::size_t>(k)] * components + b;
+            matrix.innerIndexPtr()[position] = graph.neighbours[std::size_t(k)] * components + b;
             matrix.valuePtr()[position] = 0.0;
           }
         }
@@ -43,13 +43,13 @@ template <int components>
 void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const Index* nodes, int count,
               const double* blocks, double* values) {
   for (int i = 0; i < count; ++i) {
-    const auto row = static_cast<std::size_t>(nodes[i]);
+    const auto row = std::size_t(nodes[i]);
     if (nodes[i] < part_begin || nodes[i] >= part_end) continue;
     const Index row_start = graph.offsets[row];
     const Index row_length = graph.offsets[row + 1] - row_start;
     const int* begin = graph.neighbours.data() + row_start;
     for (int j = 0; j < count; ++j) {
-      const Index at = std::lower_bound(begin, begin + row_length, static_cast<int>(nodes[j])) - begin;
+      const Index at = std::lower_bound(begin, begin + row_length, int(nodes[j])) - begin;
       const double* block = blocks + pair_number(std::min(i, j), std::max(i, j)) * components * components;
       for (int a = 0; a < components; ++a) {
         double* target = values + (row_start * components + a * row_length + at) * components;
@@ -70,12 +70,12 @@ SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMat
   for (const CellBlock& block : body.space->cells) most_nodes = std::max(most_nodes, block.nodes_per_cell);
   parallel_ranges(graph.parts(), [&](Index first, Index last) {
     std::vector<double> blocks(static_cast<std::size_t>(pair_number(0, most_nodes) * components * components));
-    for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
+    for (auto part = std::size_t(first); part < std::size_t(last); ++part) {
       CellWalk cell(body.space->cells);
       for (Index k = graph.cell_begins[part]; k < graph.cell_begins[part + 1]; ++k) {
-        const int number = graph.cells[static_cast<std::size_t>(k)];
+        const int number = graph.cells[std::size_t(k)];
         cell.go_to(number);
-        element(cell.block(), cell.local(), static_cast<std::size_t>(number), blocks.data());
+        element(cell.block(), cell.local(), std::size_t(number), blocks.data());
         add_rows<components>(graph, graph.part_begins[part], graph.part_begins[part + 1], cell.nodes(),
                              cell.node_count(), blocks.data(), result.valuePtr());
       }
@@ -92,11 +92,11 @@ void assemble_vectors(const Body& body, const NodeGraph& graph, const ElementVec
   for (Vector* const result : results) result->setZero(graph.node_count() * components);
   parallel_ranges(graph.parts(), [&](Index first, Index last) {
     std::array<std::array<double, most_cell_nodes * components>, count> values;
-    for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
+    for (auto part = std::size_t(first); part < std::size_t(last); ++part) {
       const Index begin = graph.part_begins[part], end = graph.part_begins[part + 1];
       CellWalk walk(body.space->cells);
       for (Index k = graph.cell_begins[part]; k < graph.cell_begins[part + 1]; ++k) {
-        const Index cell = graph.cells[static_cast<std::size_t>(k)];
+        const Index cell = graph.cells[std::size_t(k)];
         walk.go_to(cell);
         element(walk, part, cell, values);
         for (std::size_t r = 0; r < count; ++r) {

@@ -22,16 +22,16 @@ class CellDilatation {
   /// Orthonormalizes `functions`, points × 1 or points × (d + 1), in the product of the positive `weights` per point.
   /// By Gram–Schmidt, applied twice for accuracy.
   RICOCHET_PART_OF_CALLER void start(const Matrix& functions, const Number* weights, int points) {
-    points_ = static_cast<std::size_t>(points);
+    points_ = std::size_t(points);
     weights_ = weights;
-    count_ = static_cast<int>(functions.cols());
+    count_ = int(functions.cols());
     const double* value = functions.data();
     for (int m = 0; m < count_; ++m) {
-      Number* const own = orthonormal_[static_cast<std::size_t>(m)].data();
+      Number* const own = orthonormal_[std::size_t(m)].data();
       for (std::size_t q = 0; q < points_; ++q) own[q] = Number{} + *value++;
       for (int time = 0; time < 2 && m > 0; ++time) {
         for (int n = 0; n < m; ++n) {
-          const Number* const other = orthonormal_[static_cast<std::size_t>(n)].data();
+          const Number* const other = orthonormal_[std::size_t(n)].data();
           const Number part = product(own, other);
           for (std::size_t q = 0; q < points_; ++q) own[q] -= part * other[q];
         }
@@ -45,15 +45,13 @@ class CellDilatation {
   RICOCHET_PART_OF_CALLER void project(const Number* values, Number* result) const {
     for (std::size_t q = 0; q < points_; ++q) result[q] = Number{};
     for (int m = 0; m < count_; ++m) {
-      const Number* const own = orthonormal_[static_cast<std::size_t>(m)].data();
+      const Number* const own = orthonormal_[std::size_t(m)].data();
       const Number part = product(own, values);
       for (std::size_t q = 0; q < points_; ++q) result[q] += part * own[q];
     }
   }
   /// Orthonormal functions: P f = Σ_m ψ_m Σ w ψ_m f.
-  [[nodiscard]] Number function(int m, int point) const {
-    return orthonormal_[static_cast<std::size_t>(m)][static_cast<std::size_t>(point)];
-  }
+  [[nodiscard]] Number function(int m, int point) const { return orthonormal_[std::size_t(m)][std::size_t(point)]; }
 
  private:
   RICOCHET_PART_OF_CALLER Number product(const Number* a, const Number* b) const {

@@ -20,11 +20,11 @@ class CellKernel {
 
   CellKernel(const KernelBlock<d>& block, Index cell, const MaterialLaw& law, bool plane_stress, bool mean_dilatation)
       : block_(block), law_(law, plane_stress) {
-    const auto lane = static_cast<Index>(block.lane[static_cast<std::size_t>(cell)]);
+    const auto lane = Index(block.lane[std::size_t(cell)]);
     pack_ = lane / block.width;
     lane_ = lane % block.width;
     for (int q = 0; q < block.points; ++q)
-      weights_[static_cast<std::size_t>(q)] = block.weight[static_cast<std::size_t>(block.index(pack_, q) + lane_)];
+      weights_[std::size_t(q)] = block.weight[std::size_t(block.index(pack_, q) + lane_)];
     if (mean_dilatation && law.volumetric_modulus() > 0.0 && block.dilatation_functions.size() > 0) {
       volume_.modulus = law.volumetric_modulus();
       dilatation_.start(block.dilatation_functions, weights_.data(), block.points);
@@ -33,7 +33,7 @@ class CellKernel {
 
   void gather(const Index* nodes, const Vector& from, LocalVector& to) const {
     for (int i = 0; i < block_.nodes; ++i) {
-      for (int a = 0; a < d; ++a) to[static_cast<std::size_t>(i * d + a)] = from[nodes[i] * d + a];
+      for (int a = 0; a < d; ++a) to[std::size_t(i * d + a)] = from[nodes[i] * d + a];
     }
   }
 
@@ -50,26 +50,24 @@ class CellKernel {
       for (std::size_t a = 0; a < d; ++a) {
         double sum = reference[0] * inverse[a];
         for (std::size_t k = 1; k < d; ++k) sum += reference[k] * inverse[k * d + a];
-        gradients_[static_cast<std::size_t>(i) * d + a] = sum;
+        gradients_[std::size_t(i) * d + a] = sum;
       }
     }
     if (!block_.is_axisymmetric()) return;
-    const double radius = block_.radius[static_cast<std::size_t>(block_.index(pack_, q) + lane_)];
+    const double radius = block_.radius[std::size_t(block_.index(pack_, q) + lane_)];
     for (int i = 0; i < block_.nodes; ++i)
-      hoop_[static_cast<std::size_t>(i)] = block_.integration.displacement.values(i, q) / radius;
+      hoop_[std::size_t(i)] = block_.integration.displacement.values(i, q) / radius;
   }
-  [[nodiscard]] double weight(int q) const { return weights_[static_cast<std::size_t>(q)]; }
+  [[nodiscard]] double weight(int q) const { return weights_[std::size_t(q)]; }
   [[nodiscard]] Tensor gradient(const LocalVector& u) const {
     Tensor result = Tensor::Zero();
     for (int i = 0; i < block_.nodes; ++i) {
       for (int a = 0; a < d; ++a) {
-        for (int b = 0; b < d; ++b)
-          result(a, b) += u[static_cast<std::size_t>(i * d + a)] * gradients_[static_cast<std::size_t>(i * d + b)];
+        for (int b = 0; b < d; ++b) result(a, b) += u[std::size_t(i * d + a)] * gradients_[std::size_t(i * d + b)];
       }
     }
     if (d == 2 && block_.is_axisymmetric()) {
-      for (int i = 0; i < block_.nodes; ++i)
-        result(2, 2) += u[static_cast<std::size_t>(i * d)] * hoop_[static_cast<std::size_t>(i)];
+      for (int i = 0; i < block_.nodes; ++i) result(2, 2) += u[std::size_t(i * d)] * hoop_[std::size_t(i)];
     }
     return result;
   }
@@ -78,11 +76,11 @@ class CellKernel {
     for (int i = 0; i < block_.nodes; ++i) {
       for (int a = 0; a < d; ++a) {
         double sum = 0.0;
-        for (int b = 0; b < d; ++b) sum += stress(a, b) * gradients_[static_cast<std::size_t>(i * d + b)];
-        force[static_cast<std::size_t>(i * d + a)] += weight(q) * sum;
+        for (int b = 0; b < d; ++b) sum += stress(a, b) * gradients_[std::size_t(i * d + b)];
+        force[std::size_t(i * d + a)] += weight(q) * sum;
       }
       if (d == 2 && block_.is_axisymmetric())
-        force[static_cast<std::size_t>(i * d)] += weight(q) * stress(2, 2) * hoop_[static_cast<std::size_t>(i)];
+        force[std::size_t(i * d)] += weight(q) * stress(2, 2) * hoop_[std::size_t(i)];
     }
   }
 
@@ -117,7 +115,7 @@ class CellKernel {
   [[nodiscard]] double energy_at(int q, const Tensor& strain) const {
     double density = law_.energy(strain);
     if (has_dilatation()) {
-      const double theta = mean_[static_cast<std::size_t>(q)];  // Θ − 1
+      const double theta = mean_[std::size_t(q)];  // Θ − 1
       density += volume_.energy(theta * (2.0 + theta)) - volume_.energy(determinant_change(2.0 * strain));
     }
     return density;
@@ -178,11 +176,10 @@ class CellKernel {
     PointValues change;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      change[static_cast<std::size_t>(q)] = volume_change(determinant_change(2.0 * motion().strain));
+      change[std::size_t(q)] = volume_change(determinant_change(2.0 * motion().strain));
     }
     dilatation_.project(change.data(), mean_.data());
-    for (int q = 0; q < block_.points; ++q)
-      change[static_cast<std::size_t>(q)] = slope(mean_[static_cast<std::size_t>(q)]);
+    for (int q = 0; q < block_.points; ++q) change[std::size_t(q)] = slope(mean_[std::size_t(q)]);
     dilatation_.project(change.data(), pressure_.data());
   }
   /// U′ and U″ of U(J) = (K/4)(J² − 1 − 2 ln J) at J = 1 + j.
@@ -196,14 +193,14 @@ class CellKernel {
   void add_mean_pressure(int q, const Tensor& strain, Tensor& stress) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
     const Tensor inverse = inverse_metric(strain);
-    stress += (pressure_[static_cast<std::size_t>(q)] * volume - volume_.stress_factor(s)) * inverse;
+    stress += (pressure_[std::size_t(q)] * volume - volume_.stress_factor(s)) * inverse;
   }
   /// Adds the derivative ∂/∂E of the correction with p constant: p J (C⁻¹ ⊗ C⁻¹ − 2 C⁻¹ ⊙ C⁻¹)
   /// replaces the tangent of U(J).
   void add_mean_tangent(int q, const Tensor& strain, StressTangent& tangent) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
     const Tensor inverse = inverse_metric(strain);
-    const double p = pressure_[static_cast<std::size_t>(q)] * volume;
+    const double p = pressure_[std::size_t(q)] * volume;
     VolumetricEnergy{-volume_.modulus}.add_tangent(s, inverse, tangent);
     add_dyad(inverse, inverse, p, tangent);
     add_symmetric_product(inverse, -2.0 * p, tangent);
@@ -212,7 +209,7 @@ class CellKernel {
   /// Computes the rows of B of a node: derivatives of the strain components (shear doubled) by its displacements, at F.
   void strain_rows(int node, const Tensor& f, Eigen::Matrix<double, 6, d>& rows) const {
     std::array<double, 3> g{};
-    for (int a = 0; a < d; ++a) g[static_cast<std::size_t>(a)] = gradients_[static_cast<std::size_t>(node * d + a)];
+    for (int a = 0; a < d; ++a) g[std::size_t(a)] = gradients_[std::size_t(node * d + a)];
     for (int k = 0; k < d; ++k) {
       rows(0, k) = f(k, 0) * g[0];
       rows(1, k) = f(k, 1) * g[1];
@@ -221,31 +218,29 @@ class CellKernel {
       rows(4, k) = d == 3 ? f(k, 1) * g[2] + f(k, 2) * g[1] : 0.0;
       rows(5, k) = d == 3 ? f(k, 2) * g[0] + f(k, 0) * g[2] : 0.0;
     }
-    if (d == 2 && block_.is_axisymmetric()) rows(2, 0) = f(2, 2) * hoop_[static_cast<std::size_t>(node)];
+    if (d == 2 && block_.is_axisymmetric()) rows(2, 0) = f(2, 2) * hoop_[std::size_t(node)];
   }
 
   void add_point_tangent(int q, const Tensor& f, const Tensor& stress, const StressTangent& tangent, double* blocks) {
     std::array<Eigen::Matrix<double, 6, d>, most_cell_nodes> rows;
-    for (int i = 0; i < block_.nodes; ++i) strain_rows(i, f, rows[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < block_.nodes; ++i) strain_rows(i, f, rows[std::size_t(i)]);
     const StressTangent weighted = weight(q) * tangent;
     for (int j = 0; j < block_.nodes; ++j) {
-      const Eigen::Matrix<double, 6, d> right = weighted * rows[static_cast<std::size_t>(j)];
+      const Eigen::Matrix<double, 6, d> right = weighted * rows[std::size_t(j)];
       Eigen::Matrix<double, d, 1> traction = Eigen::Matrix<double, d, 1>::Zero();
       for (int a = 0; a < d; ++a) {
-        for (int b = 0; b < d; ++b)
-          traction[a] += weight(q) * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
+        for (int b = 0; b < d; ++b) traction[a] += weight(q) * stress(a, b) * gradients_[std::size_t(j * d + b)];
       }
       for (int i = 0; i <= j; ++i, blocks += d * d) {
-        const Eigen::Matrix<double, d, d> block = rows[static_cast<std::size_t>(i)].transpose() * right;
+        const Eigen::Matrix<double, d, d> block = rows[std::size_t(i)].transpose() * right;
         double geometric = 0.0;
-        for (int a = 0; a < d; ++a) geometric += gradients_[static_cast<std::size_t>(i * d + a)] * traction[a];
+        for (int a = 0; a < d; ++a) geometric += gradients_[std::size_t(i * d + a)] * traction[a];
         for (int a = 0; a < d; ++a) {
           for (int b = 0; b < d; ++b) blocks[a * d + b] += block(a, b);
           blocks[a * d + a] += geometric;
         }
         if (d == 2 && block_.is_axisymmetric()) {
-          blocks[0] +=
-              weight(q) * stress(2, 2) * hoop_[static_cast<std::size_t>(i)] * hoop_[static_cast<std::size_t>(j)];
+          blocks[0] += weight(q) * stress(2, 2) * hoop_[std::size_t(i)] * hoop_[std::size_t(j)];
         }
       }
     }
@@ -271,10 +266,10 @@ class CellKernel {
       go_to(q);
       const Tensor f = Tensor::Identity() + gradient(u);
       const Tensor cofactor = f.determinant() * f.inverse().transpose();
-      const double second = weight(q) * curvature(mean_[static_cast<std::size_t>(q)]);
+      const double second = weight(q) * curvature(mean_[std::size_t(q)]);
       for (int m = 0; m < count; ++m) {
         const double value = dilatation_.function(m, q);
-        add_force(q, value * cofactor, slopes[static_cast<std::size_t>(m)]);
+        add_force(q, value * cofactor, slopes[std::size_t(m)]);
         for (int n = 0; n < count; ++n) product(m, n) += value * second * dilatation_.function(n, q);
       }
     }
@@ -284,9 +279,8 @@ class CellKernel {
           for (int n = 0; n < count; ++n) {
             for (int a = 0; a < d; ++a) {
               for (int b = 0; b < d; ++b) {
-                blocks[a * d + b] += product(m, n) *
-                                     slopes[static_cast<std::size_t>(m)][static_cast<std::size_t>(i * d + a)] *
-                                     slopes[static_cast<std::size_t>(n)][static_cast<std::size_t>(j * d + b)];
+                blocks[a * d + b] += product(m, n) * slopes[std::size_t(m)][std::size_t(i * d + a)] *
+                                     slopes[std::size_t(n)][std::size_t(j * d + b)];
               }
             }
           }

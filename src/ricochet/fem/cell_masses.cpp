@@ -33,10 +33,10 @@ void CellMasses::for_each_inertia(const VisitInertia& visit) const {
   for (std::size_t b = 0; b < body_.space->cells.size(); ++b) {
     const CellBlock& cells = body_.space->cells[b];
     const int count = cells.nodes_per_cell;
-    pairs.resize(static_cast<std::size_t>(pair_number(0, count)));
+    pairs.resize(std::size_t(pair_number(0, count)));
     mass.resize(count, count);
     for (Index cell = 0; cell < cells.size(); ++cell, ++number) {
-      const auto material = static_cast<std::size_t>(body_.cell_material[number]);
+      const auto material = std::size_t(body_.cell_material[number]);
       const double density = body_.materials[material].density;
       const Index* geometry = body_.mesh->cells[b].cell(cell);
       if (body_.mesh->dimension == 2) {
@@ -45,7 +45,7 @@ void CellMasses::for_each_inertia(const VisitInertia& visit) const {
         element_mass<3>(rules_->of_block[b], body_.mesh->nodes, geometry, density, pairs.data());
       }
       for (int j = 0; j < count; ++j) {
-        for (int i = 0; i <= j; ++i) mass(i, j) = mass(j, i) = pairs[static_cast<std::size_t>(pair_number(i, j))];
+        for (int i = 0; i <= j; ++i) mass(i, j) = mass(j, i) = pairs[std::size_t(pair_number(i, j))];
       }
       nodes.assign(cells.cell(cell), cells.cell(cell) + count);
       const double weight = weight_.empty() ? 1.0 : weight_[material];
@@ -78,10 +78,10 @@ std::vector<Index> CellMasses::untied_nodes_of(const std::vector<Index>& nodes) 
 
 /// T on a cell: its nodes × the nodes that determine them.
 Matrix CellMasses::tie_matrix(const std::vector<Index>& nodes, const std::vector<Index>& followed) const {
-  Matrix result = Matrix::Zero(static_cast<Index>(nodes.size()), static_cast<Index>(followed.size()));
+  Matrix result = Matrix::Zero(Index(nodes.size()), Index(followed.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const auto& [other, weight] : body_.tied->spread({{nodes[i], 1.0}}))
-      result(static_cast<Index>(i), std::ranges::lower_bound(followed, other) - followed.begin()) = weight;
+      result(Index(i), std::ranges::lower_bound(followed, other) - followed.begin()) = weight;
   }
   return result;
 }

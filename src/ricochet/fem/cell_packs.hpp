@@ -29,8 +29,8 @@ class CellPacks {
   /// Packs the given cells, ascending; all if empty. Keeps no references.
   CellPacks(const Body& body, const NodeGraph* graph, const std::vector<int>& cells);
 
-  [[nodiscard]] Index parts() const { return static_cast<Index>(runs_.size()); }
-  [[nodiscard]] const std::vector<PackRun>& runs(Index part) const { return runs_[static_cast<std::size_t>(part)]; }
+  [[nodiscard]] Index parts() const { return Index(runs_.size()); }
+  [[nodiscard]] const std::vector<PackRun>& runs(Index part) const { return runs_[std::size_t(part)]; }
   /// Cells of a block (numbered within it) in all lanes, pack by pack; −1 for unused lanes.
   [[nodiscard]] const std::vector<int>& lanes(std::size_t block) const { return lanes_[block]; }
   /// Index, among the numbers of the part, of a node of a lane: for each pack and node of the cell, one per lane. For
@@ -45,7 +45,7 @@ class CellPacks {
   /// Index of the first number of a part in that storage.
   template <int d>
   [[nodiscard]] Index begin(Index part) const {
-    return begins_[static_cast<std::size_t>(part)] * node_stride<d>;
+    return begins_[std::size_t(part)] * node_stride<d>;
   }
   /// Copies a vector per dof to the numbers of a part.
   template <int d>

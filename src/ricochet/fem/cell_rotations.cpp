@@ -234,9 +234,9 @@ LargestRotation largest_of_simplices(const std::vector<int>& vertices, const Poi
                                      const Vector& displacement) {
   LargestRotation result;
   SimplexBatch<d> batch;
-  const int last_dof = static_cast<int>(displacement.size()) - d;
+  const int last_dof = int(displacement.size()) - d;
   for (Index cell = first; cell < last; cell += SimplexBatch<d>::size) {
-    const int count = static_cast<int>(std::min<Index>(SimplexBatch<d>::size, last - cell));
+    const int count = int(std::min<Index>(SimplexBatch<d>::size, last - cell));
     evaluate(vertices.data() + cell * (d + 1), count, positions.data(), displacement.data(), last_dof, batch);
     result += batch.largest();
   }
@@ -249,12 +249,12 @@ std::vector<int> sorted_vertices(const CellBlock& cells, int d) {
   const int count = cells.nodes_per_cell;
   const auto lowest = [&](Index cell) { return *std::min_element(cells.cell(cell), cells.cell(cell) + count); };
   std::vector<std::pair<Index, Index>> order(static_cast<std::size_t>(cells.size()));
-  for (Index cell = 0; cell < cells.size(); ++cell) order[static_cast<std::size_t>(cell)] = {lowest(cell), cell};
+  for (Index cell = 0; cell < cells.size(); ++cell) order[std::size_t(cell)] = {lowest(cell), cell};
   std::ranges::sort(order);
   std::vector<int> vertices;
   vertices.reserve(cells.nodes.size());
   for (const auto& [node, cell] : order) {
-    for (int k = 0; k < count; ++k) vertices.push_back(static_cast<int>(cells.cell(cell)[k]) * d);
+    for (int k = 0; k < count; ++k) vertices.push_back(int(cells.cell(cell)[k]) * d);
   }
   return vertices;
 }
@@ -264,7 +264,7 @@ std::vector<double> gradients_at_centres(const Body& body, const CellBlock& geom
   const Points centre = reference_centre(geometry.shape);
   const Tabulation map = ReferenceElement::get(geometry.shape, body.mesh->degree).tabulate(centre);
   const Tabulation shape = ReferenceElement::get(geometry.shape, body.space->degree).tabulate(centre);
-  std::vector<double> result(cells.nodes.size() * static_cast<std::size_t>(d));
+  std::vector<double> result(cells.nodes.size() * std::size_t(d));
   parallel_ranges(cells.size(), [&](Index first, Index last) {
     for (Index cell = first; cell < last; ++cell) {
       const Eigen::Matrix<double, d, d> inverse =

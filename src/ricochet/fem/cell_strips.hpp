@@ -10,7 +10,7 @@ namespace ricochet {
 
 /// Numbers at the points of a strip, small enough for the first-level cache if cells have few points.
 template <int components>
-using StripNumbers = std::array<double, static_cast<std::size_t>(components* most_cell_points* most_pack_width)>;
+using StripNumbers = std::array<double, std::size_t(components* most_cell_points* most_pack_width)>;
 
 /// Iterates over the strips of a part, with the data common to their cells.
 template <int d>
@@ -38,7 +38,7 @@ class ElasticCells::CellStrips {
   [[nodiscard]] const Body& body() const { return body_; }
   /// Material of the current run.
   [[nodiscard]] const Material& material() const { return body_.materials[material_number()]; }
-  [[nodiscard]] std::size_t material_number() const { return static_cast<std::size_t>(run_->material); }
+  [[nodiscard]] std::size_t material_number() const { return std::size_t(run_->material); }
   /// Calls work(pack, lane, number of its first point in the strip, cell of the block) for the lanes in use.
   template <class Work>
   void for_each_lane(const PackStrip<d>& strip, const Work& work) const {
@@ -46,7 +46,7 @@ class ElasticCells::CellStrips {
     Index first = 0;
     for (Index pack = strip.begin; pack < strip.end; ++pack, first += strip.block.points) {
       for (int lane = 0; lane < strip.block.width; ++lane) {
-        const int cell = lanes[static_cast<std::size_t>(pack * strip.block.width + lane)];
+        const int cell = lanes[std::size_t(pack * strip.block.width + lane)];
         if (cell >= 0) work(pack, lane, first, cell);
       }
     }
@@ -57,8 +57,7 @@ class ElasticCells::CellStrips {
     double sum = 0.0;
     for_each_lane(strip, [&](Index pack, int lane, Index first, int) {
       for (int q = 0; q < block.points; ++q)
-        sum += block.weight[static_cast<std::size_t>(block.index(pack, q) + lane)] *
-               values[(first + q) * block.width + lane];
+        sum += block.weight[std::size_t(block.index(pack, q) + lane)] * values[(first + q) * block.width + lane];
     });
     return sum;
   }

@@ -18,27 +18,25 @@ ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
   });
   for (const auto& [one, other] : space.glued) sets.join(one, other);
   ConnectedBodies result;
-  const auto count = static_cast<std::size_t>(space.node_count());
+  const auto count = std::size_t(space.node_count());
   std::vector<int> of_root(count, -1);
   each_cell(space.cells, [&](Index, std::span<const Index> nodes) {
-    int& body = of_root[static_cast<std::size_t>(sets.root(nodes[0]))];
+    int& body = of_root[std::size_t(sets.root(nodes[0]))];
     if (body < 0) body = result.count++;
     result.of_cell.push_back(body);
   });
   result.of_node.reserve(count);
   for (Index node = 0; node < space.node_count(); ++node)
-    result.of_node.push_back(of_root[static_cast<std::size_t>(sets.root(node))]);
+    result.of_node.push_back(of_root[std::size_t(sets.root(node))]);
   return result;
 }
 
 std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies) {
   if (bodies.count == 1) return {"the body"};
-  const auto count = static_cast<std::size_t>(bodies.count);
-  const auto body_of = [&](Index cell) {
-    return static_cast<std::size_t>(bodies.of_cell[static_cast<std::size_t>(cell)]);
-  };
+  const auto count = std::size_t(bodies.count);
+  const auto body_of = [&](Index cell) { return std::size_t(bodies.of_cell[std::size_t(cell)]); };
   std::vector<std::size_t> cells(count, 0);
-  for (const int body : bodies.of_cell) ++cells[static_cast<std::size_t>(body)];
+  for (const int body : bodies.of_cell) ++cells[std::size_t(body)];
   std::vector<std::string> equal_group(count);         // a group that is exactly this body
   std::vector<std::vector<std::string>> parts(count);  // groups that lie entirely within this body
   const auto compare = [&](const std::string& name, const std::vector<Index>& members) {
@@ -73,8 +71,8 @@ std::vector<double> body_diameters(const Body& body, const ConnectedBodies& bodi
   const Points& nodes = body.space->nodes;
   std::vector<std::vector<Index>> nodes_of(static_cast<std::size_t>(bodies.count));
   for (Index node = 0; node < nodes.cols(); ++node) {
-    const int number = bodies.of_node[static_cast<std::size_t>(node)];
-    if (number >= 0) nodes_of[static_cast<std::size_t>(number)].push_back(node);  // else of a rigid body
+    const int number = bodies.of_node[std::size_t(node)];
+    if (number >= 0) nodes_of[std::size_t(number)].push_back(node);  // else of a rigid body
   }
   std::vector<double> result;
   for (const std::vector<Index>& own : nodes_of) result.push_back(enclosing_diameter(nodes(Eigen::all, own)));
@@ -83,11 +81,11 @@ std::vector<double> body_diameters(const Body& body, const ConnectedBodies& bodi
 
 std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies) {
   const std::vector<double> diameters = body_diameters(body, bodies);
-  const auto count = static_cast<std::size_t>(bodies.count);
+  const auto count = std::size_t(bodies.count);
   std::vector<double> speed(count, std::numeric_limits<double>::infinity()), result;
   for (std::size_t cell = 0; cell < bodies.of_cell.size(); ++cell) {
-    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
-    double& slowest = speed[static_cast<std::size_t>(bodies.of_cell[cell])];
+    const Material& material = body.materials[std::size_t(body.cell_material[cell])];
+    double& slowest = speed[std::size_t(bodies.of_cell[cell])];
     slowest = std::min(slowest, compression_wave_speed(material, is_plane_stress(body)));
   }
   for (std::size_t b = 0; b < count; ++b) result.push_back(diameters[b] / speed[b]);
@@ -110,7 +108,7 @@ namespace {
 std::vector<double> unsorted_crossing_times(const Body& body) {
   std::vector<double> times = cell_heights(*body.mesh);
   for (std::size_t cell = 0; cell < times.size(); ++cell) {
-    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
+    const Material& material = body.materials[std::size_t(body.cell_material[cell])];
     times[cell] /= compression_wave_speed(material, is_plane_stress(body));
   }
   return times;
@@ -128,7 +126,7 @@ std::vector<double> median_crossing_times(const Body& body) {
   const std::vector<double> times = unsorted_crossing_times(body);
   std::vector<std::vector<double>> of_material(body.materials.size());
   for (std::size_t cell = 0; cell < times.size(); ++cell)
-    of_material[static_cast<std::size_t>(body.cell_material[cell])].push_back(times[cell]);
+    of_material[std::size_t(body.cell_material[cell])].push_back(times[cell]);
   std::vector<double> result;
   for (std::vector<double>& own : of_material) {
     std::ranges::sort(own);

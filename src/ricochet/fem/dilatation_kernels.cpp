@@ -33,7 +33,7 @@ struct MeanDilatation {
     Index point = 0;
     for (Index pack = strip.begin; pack < strip.end; ++pack, point += block.points) {
       for (int q = 0; q < block.points; ++q) {
-        const auto at = static_cast<std::size_t>(q);
+        const auto at = std::size_t(q);
         weights[at] = load<W>(block.weight.data() + block.index(pack, q));
         values[at] = volume_change_of(measures_of(strain<W>(point + q)).volume_change);
       }
@@ -44,8 +44,8 @@ struct MeanDilatation {
         continue;
       }
       for (int q = 0; q < block.points; ++q) {
-        const Number& theta = mean[static_cast<std::size_t>(q)];  // Θ − 1
-        values[static_cast<std::size_t>(q)] = 0.5 * modulus * theta * (2.0 + theta) / (1.0 + theta);
+        const Number& theta = mean[std::size_t(q)];  // Θ − 1
+        values[std::size_t(q)] = 0.5 * modulus * theta * (2.0 + theta) / (1.0 + theta);
       }
       dilatation.project(values.data(), pressure.data());
       add_pressures<W>(point, pressure.data());

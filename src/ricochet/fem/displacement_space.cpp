@@ -20,7 +20,7 @@ std::vector<CellBlock> restrict_to_vertices(const std::vector<CellBlock>& blocks
     CellBlock reduced{block.shape, vertex_count(block.shape), {}, block.tags};
     for (Index i = 0; i < block.size(); ++i) {
       for (int v = 0; v < reduced.nodes_per_cell; ++v) {
-        reduced.nodes.push_back(number[static_cast<std::size_t>(block.cell(i)[v])]);
+        reduced.nodes.push_back(number[std::size_t(block.cell(i)[v])]);
       }
     }
     result.push_back(std::move(reduced));
@@ -34,18 +34,18 @@ DisplacementSpace vertices_of(const Mesh& mesh) {
   std::vector<char> is_vertex(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const CellBlock& block : mesh.cells) {
     for (Index i = 0; i < block.size(); ++i) {
-      for (int v = 0; v < vertex_count(block.shape); ++v) is_vertex[static_cast<std::size_t>(block.cell(i)[v])] = 1;
+      for (int v = 0; v < vertex_count(block.shape); ++v) is_vertex[std::size_t(block.cell(i)[v])] = 1;
     }
   }
   std::vector<Index> number(is_vertex.size(), -1);
   for (std::size_t node = 0; node < is_vertex.size(); ++node) {
     if (is_vertex[node] == 0) continue;
-    number[node] = static_cast<Index>(vertices.size());
-    vertices.push_back(static_cast<Index>(node));
+    number[node] = Index(vertices.size());
+    vertices.push_back(Index(node));
   }
-  space.nodes.resize(mesh.dimension, static_cast<Index>(vertices.size()));
+  space.nodes.resize(mesh.dimension, Index(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    space.nodes.col(static_cast<Index>(i)) = mesh.nodes.col(vertices[i]);
+    space.nodes.col(Index(i)) = mesh.nodes.col(vertices[i]);
   }
   space.cells = restrict_to_vertices(mesh.cells, number);
   space.facets = restrict_to_vertices(mesh.facets, number);
@@ -62,7 +62,7 @@ class SecondOrderNodes {
     std::vector<CellBlock> result;
     for (const CellBlock& block : blocks) {
       CellBlock refined{block.shape, node_count(block.shape, 2), {}, block.tags};
-      refined.nodes.reserve(static_cast<std::size_t>(block.size() * node_count(block.shape, 2)));
+      refined.nodes.reserve(std::size_t(block.size() * node_count(block.shape, 2)));
       for (Index i = 0; i < block.size(); ++i) {
         for (const std::vector<int>& support : node_vertices(block.shape, 2)) {
           refined.nodes.push_back(node_on(block.cell(i), support));
@@ -79,7 +79,7 @@ class SecondOrderNodes {
     for (const auto& [vertices, node] : numbers_) {
       Vector mean = Vector::Zero(mesh_.dimension);
       for (const Index vertex : vertices) mean += mesh_.nodes.col(vertex);
-      all.col(node) = mean / static_cast<double>(vertices.size());
+      all.col(node) = mean / double(vertices.size());
     }
     return all;
   }
@@ -121,12 +121,12 @@ void renumber(DisplacementSpace& space) {
   const Points nodes = std::move(space.nodes);
   space.nodes.resize(nodes.rows(), nodes.cols());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    new_number[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
-    space.nodes.col(static_cast<Index>(i)) = nodes.col(order[i]);
+    new_number[std::size_t(order[i])] = Index(i);
+    space.nodes.col(Index(i)) = nodes.col(order[i]);
   }
   for (std::vector<CellBlock>* blocks : {&space.cells, &space.facets}) {
     for (CellBlock& block : *blocks) {
-      for (Index& node : block.nodes) node = new_number[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = new_number[std::size_t(node)];
     }
   }
 }
@@ -160,7 +160,7 @@ NearestNode nearest_node(const DisplacementSpace& space, const Vector& point) {
   double best = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < space.cell_node_count(); ++i) {
     const double distance = (space.nodes.col(i) - point).squaredNorm();
-    const auto number = [&](Index node) { return space.number[static_cast<std::size_t>(node)]; };
+    const auto number = [&](Index node) { return space.number[std::size_t(node)]; };
     if (distance < best || (distance == best && number(i) < number(nearest.node))) {
       best = distance;
       nearest.node = i;

@@ -56,26 +56,26 @@ struct ElasticCells::Blocks {
         stiffness_integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
     const bool simplex = is_simplex(cells.shape);
     block.affine = simplex && body.mesh->degree == 1;
-    block.points = static_cast<int>(block.integration.rule.weights.size());
-    block.nodes = static_cast<int>(block.integration.displacement.values.rows());
+    block.points = int(block.integration.rule.weights.size());
+    block.nodes = int(block.integration.displacement.values.rows());
     block.width = pack_width();
     for (const Matrix& of_point : block.integration.displacement.gradients) {
       for (int i = 0; i < block.nodes; ++i) {
         for (int k = 0; k < d; ++k) block.gradients.push_back(of_point(i, k));
       }
     }
-    const auto packs_of_block = lanes.size() / static_cast<std::size_t>(block.width);
-    block.weight.resize(lanes.size() * static_cast<std::size_t>(block.points));
+    const auto packs_of_block = lanes.size() / std::size_t(block.width);
+    block.weight.resize(lanes.size() * std::size_t(block.points));
     if (is_axisymmetric(body)) block.radius.resize(block.weight.size());
     block.inverse.resize(d * d * (block.affine ? lanes.size() : block.weight.size()));
-    block.lane.assign(static_cast<std::size_t>(cells.size()), -1);
+    block.lane.assign(std::size_t(cells.size()), -1);
     for (std::size_t pack = 0; pack < packs_of_block; ++pack) {
       for (int k = 0; k < block.width; ++k) {
-        const std::size_t index = pack * static_cast<std::size_t>(block.width) + static_cast<std::size_t>(k);
+        const std::size_t index = pack * std::size_t(block.width) + std::size_t(k);
         // An unused lane has the geometry of the first lane's cell.
-        const Index cell = lanes[lanes[index] < 0 ? pack * static_cast<std::size_t>(block.width) : index];
-        if (lanes[index] >= 0) block.lane[static_cast<std::size_t>(cell)] = static_cast<int>(index);
-        measure(cells.cell(cell), static_cast<Index>(pack), k, block);
+        const Index cell = lanes[lanes[index] < 0 ? pack * std::size_t(block.width) : index];
+        if (lanes[index] >= 0) block.lane[std::size_t(cell)] = int(index);
+        measure(cells.cell(cell), Index(pack), k, block);
       }
     }
     if (!simplex || body.space->degree > 1) block.dilatation_functions = dilatation_functions(cells.shape, block);
@@ -84,17 +84,16 @@ struct ElasticCells::Blocks {
   /// Computes Jacobians, weights and radii of one cell.
   void measure(const Index* nodes, Index pack, int lane, KernelBlock<d>& block) const {
     for (int q = 0; q < block.points; ++q) {
-      const auto map =
-          jacobian<d>(body.mesh->nodes, nodes, block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
-      const auto index = static_cast<std::size_t>(block.index(pack, q) + lane);
+      const auto map = jacobian<d>(body.mesh->nodes, nodes, block.integration.geometry.gradients[std::size_t(q)]);
+      const auto index = std::size_t(block.index(pack, q) + lane);
       block.weight[index] =
           block.integration.rule.weights[q] * map.determinant() * block.integration.ring(body.mesh->nodes, nodes, q);
       if (is_axisymmetric(body)) block.radius[index] = block.integration.radius(body.mesh->nodes, nodes, q);
       if (block.affine && q > 0) continue;
       const Eigen::Matrix<double, d, d> inverse = map.inverse();
-      auto at = static_cast<std::size_t>(block.inverse_of_pack(pack, q) - block.inverse.data() + lane);
+      auto at = std::size_t(block.inverse_of_pack(pack, q) - block.inverse.data() + lane);
       for (int i = 0; i < d; ++i) {
-        for (int j = 0; j < d; ++j, at += static_cast<std::size_t>(block.width)) block.inverse[at] = inverse(i, j);
+        for (int j = 0; j < d; ++j, at += std::size_t(block.width)) block.inverse[at] = inverse(i, j);
       }
     }
   }

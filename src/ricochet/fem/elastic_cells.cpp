@@ -20,7 +20,7 @@ SparseMatrix ElasticCells::tangent(const Vector& displacement, double step) cons
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
     return assemble<d>(body_, *graph_, [&](std::size_t block, Index local, std::size_t number, double* values) {
-      const auto cell = static_cast<Index>(number);
+      const auto cell = Index(number);
       CellKernel<d> kernel = all.kernel(block, local, cell);
       typename CellKernel<d>::LocalVector u{};
       if (displacement.size() > 0) kernel.gather(body_.space->cells[block].cell(local), displacement, u);
@@ -64,7 +64,7 @@ double add_branch_stress(const Material& material, const Tensor& strain, const d
 void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement,
                                const Vector& internal, double* stress, double& energy_density) const {
   const Material& material = material_of(body_, cell);
-  const double* at = internal.size() > 0 ? internal.data() + internal_begin_[static_cast<std::size_t>(cell)] : nullptr;
+  const double* at = internal.size() > 0 ? internal.data() + internal_begin_[std::size_t(cell)] : nullptr;
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     CellKernel<d> kernel = blocks<d>().kernel(block, local, cell);

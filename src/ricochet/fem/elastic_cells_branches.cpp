@@ -11,7 +11,7 @@ void ElasticCells::find_internal_offsets() {
   for (Index cell = 0; cell < body_.mesh->cell_count(); ++cell) {
     walk.go_to(cell);
     begin.push_back(sum);
-    const auto branches = static_cast<Index>(material_of(body_, cell).relaxation.size());
+    const auto branches = Index(material_of(body_, cell).relaxation.size());
     sum += branches * internal_components * with_dimension(body_.mesh->dimension, [&](auto dimension) -> Index {
              constexpr int d = dimension;
              return blocks<d>().all[walk.block()].points;
@@ -44,7 +44,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
       internal_.fill(displacements.internal.data());
       this->for_each_lane(strip, [&](Index pack, int lane, Index, int cell) {
         internal_[lane_number(strip, pack, lane)] =
-            displacements.internal.data() + internal_begin[static_cast<std::size_t>(cell + this->first_cell())];
+            displacements.internal.data() + internal_begin[std::size_t(cell + this->first_cell())];
       });
       find_all_strains(strip, begin, displacements);
       work(strip);
@@ -72,9 +72,9 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
   }
 
  private:
-  static constexpr auto most_lanes = static_cast<std::size_t>(CellStrips<d>::points_at_once * most_pack_width);
+  static constexpr auto most_lanes = std::size_t(CellStrips<d>::points_at_once * most_pack_width);
   static std::size_t lane_number(const PackStrip<d>& strip, Index pack, int lane) {
-    return static_cast<std::size_t>((pack - strip.begin) * strip.block.width + lane);
+    return std::size_t((pack - strip.begin) * strip.block.width + lane);
   }
   void find_next(const PackStrip<d>& strip, const BranchDisplacements& displacements, Vector& next) {
     next_.fill(nullptr);
@@ -107,7 +107,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     if (has_displacement_) {
       find_gradients(strip, blocks_.numbers.at.data() + begin, others_.data());
     } else {
-      const auto size = static_cast<std::size_t>(count * gradient_components<d> * strip.block.width);
+      const auto size = std::size_t(count * gradient_components<d> * strip.block.width);
       for (std::size_t k = 0; k < size; ++k) others_[k] = ends_[k] - others_[k];
     }
     static_cast<void>(find_strains<d>(count, false, others_.data(), nullptr, other_.data()));
@@ -162,9 +162,7 @@ double ElasticCells::sum_branches(const BranchDisplacements& displacements, cons
   std::array<double, most_node_parts> sums{};
   visit_branches(
       displacements,
-      [&](auto& strips, const auto& strip, Index part, double*) {
-        sums[static_cast<std::size_t>(part)] += find(strips, strip);
-      },
+      [&](auto& strips, const auto& strip, Index part, double*) { sums[std::size_t(part)] += find(strips, strip); },
       nullptr);
   double total = 0.0;
   for (const double sum : sums) total += sum;

@@ -89,7 +89,7 @@ class ElasticCells::StripWork : public CellStrips<d> {
   }
   [[nodiscard]] static double& number(StripNumbers<strain_components<d>>& of, Index point, int component,
                                       const PackStrip<d>& strip, int lane) {
-    return of[static_cast<std::size_t>((point * strain_components<d> + component) * strip.block.width + lane)];
+    return of[std::size_t((point * strain_components<d> + component) * strip.block.width + lane)];
   }
   /// Plane stress: computes the strain normal to the plane, point by point.
   void complete(const PackStrip<d>& strip) {
@@ -159,7 +159,7 @@ InvertedCell ElasticCells::visit_strips(std::initializer_list<PackInput> inputs,
     for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
       for (const PackInput& input : inputs) all.packs.template read<d>(part, input.values, all.numbers.*input.numbers);
       for (const PackSum& sum : sums) all.packs.template clear<d>(part, all.numbers.*sum.numbers);
-      const PackPart own{all.numbers, part, begin, worst[static_cast<std::size_t>(part)]};
+      const PackPart own{all.numbers, part, begin, worst[std::size_t(part)]};
       strips.for_each_strip(part, [&](const PackStrip<d>& strip) { work(strips, strip, own); });
     });
     for (const PackSum& sum : sums) all.packs.template add_up<d>(all.numbers.*sum.numbers, sum.result);
@@ -211,7 +211,7 @@ double ElasticCells::energy(const Vector& displacement) const {
                [&](auto& strips, const auto& strip, const PackPart& part) {
                  InvertedCell inverted;
                  strips.find_strains(strip, part.at(&PackNumbers::displacement), nullptr, inverted);
-                 sums[static_cast<std::size_t>(part.part)] +=
+                 sums[std::size_t(part.part)] +=
                      inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);
                });
   double total = 0.0;

@@ -51,7 +51,7 @@ void element_mass(const MassIntegration& integration, const Points& coordinates,
   const Matrix& values = integration.block.displacement.values;
   const auto measure = [&](std::size_t q) {
     return density * jacobian<d>(coordinates, nodes, integration.block.geometry.gradients[q]).determinant() *
-           integration.block.ring(coordinates, nodes, static_cast<Index>(q));
+           integration.block.ring(coordinates, nodes, Index(q));
   };
   if (integration.affine) {
     const double factor = measure(0);
@@ -61,7 +61,7 @@ void element_mass(const MassIntegration& integration, const Points& coordinates,
   }
   std::fill_n(result, integration.reference.size(), 0.0);
   for (Index q = 0; q < values.cols(); ++q) {
-    const double factor = integration.block.rule.weights[q] * measure(static_cast<std::size_t>(q));
+    const double factor = integration.block.rule.weights[q] * measure(std::size_t(q));
     double* pair = result;
     for (Index j = 0; j < values.rows(); ++j) {
       for (Index i = 0; i <= j; ++i) *pair++ += factor * (values(i, q) * values(j, q));
@@ -95,13 +95,13 @@ inline void add_hoop_pairs(const BlockIntegration& integration, double radius, I
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
                        const IsotropicElasticity& law, double* result) {
-  const int count = static_cast<int>(integration.displacement.values.rows());
+  const int count = int(integration.displacement.values.rows());
   std::array<double, most_cell_nodes * d> gradients;
   std::fill_n(result, pair_number(0, count) * d * d, 0.0);
   for (std::size_t q = 0; q < integration.geometry.gradients.size(); ++q) {
     const Eigen::Matrix<double, d, d> map = jacobian<d>(coordinates, nodes, integration.geometry.gradients[q]);
     const Eigen::Matrix<double, d, d> inverse = map.inverse();
-    const auto point = static_cast<Index>(q);
+    const auto point = Index(q);
     const double measure =
         integration.rule.weights[point] * map.determinant() * integration.ring(coordinates, nodes, point);
     const IsotropicElasticity weighted{measure * law.lambda, measure * law.mu};
@@ -110,7 +110,7 @@ void element_stiffness(const BlockIntegration& integration, const Points& coordi
       for (int a = 0; a < d; ++a) {
         double sum = reference(i, 0) * inverse(0, a);
         for (int k = 1; k < d; ++k) sum += reference(i, k) * inverse(k, a);
-        gradients[static_cast<std::size_t>(i * d + a)] = sum;
+        gradients[std::size_t(i * d + a)] = sum;
       }
     }
     if (count == d + 1) {

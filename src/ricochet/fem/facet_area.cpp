@@ -37,9 +37,9 @@ FacetShape make_facet_shape(CellShape shape, int geometry_degree, int displaceme
                     border_of(shape, displacement_degree),
                     {}};
   const Points& nodes = ReferenceElement::get(shape, displacement_degree).nodes();
-  result.border_points.resize(nodes.rows(), static_cast<Index>(result.border.size()));
+  result.border_points.resize(nodes.rows(), Index(result.border.size()));
   for (std::size_t k = 0; k < result.border.size(); ++k)
-    result.border_points.col(static_cast<Index>(k)) = nodes.col(result.border[k]);
+    result.border_points.col(Index(k)) = nodes.col(result.border[k]);
   return result;
 }
 

@@ -57,7 +57,7 @@ class FacetIntegration {
     }
     result.measure.resize(integration.rule.weights.size());
     for (Index q = 0; q < result.measure.size(); ++q) {
-      const Matrix& gradients = integration.geometry.gradients[static_cast<std::size_t>(q)];
+      const Matrix& gradients = integration.geometry.gradients[std::size_t(q)];
       const double density =
           body_->mesh->dimension == 2
               ? facet_measure<2>(jacobian<2, 1>(body_->mesh->nodes, geometry.cell(local), gradients))

@@ -98,9 +98,9 @@ inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {
 /// Adds factor · A ⊗ B, A and B symmetric.
 inline void add_dyad(const Tensor& a, const Tensor& b, double factor, StressTangent& result) {
   for (int p = 0; p < 6; ++p) {
-    const auto [i, j] = tangent_components[static_cast<std::size_t>(p)];
+    const auto [i, j] = tangent_components[std::size_t(p)];
     for (int q = 0; q < 6; ++q) {
-      const auto [k, l] = tangent_components[static_cast<std::size_t>(q)];
+      const auto [k, l] = tangent_components[std::size_t(q)];
       result(p, q) += factor * a(i, j) * b(k, l);
     }
   }
@@ -109,9 +109,9 @@ inline void add_dyad(const Tensor& a, const Tensor& b, double factor, StressTang
 /// Adds factor · A ⊙ A, (A ⊙ A)_ijkl = ½(A_ik A_jl + A_il A_jk): for A = I the identity on symmetric tensors.
 inline void add_symmetric_product(const Tensor& a, double factor, StressTangent& result) {
   for (int p = 0; p < 6; ++p) {
-    const auto [i, j] = tangent_components[static_cast<std::size_t>(p)];
+    const auto [i, j] = tangent_components[std::size_t(p)];
     for (int q = 0; q < 6; ++q) {
-      const auto [k, l] = tangent_components[static_cast<std::size_t>(q)];
+      const auto [k, l] = tangent_components[std::size_t(q)];
       result(p, q) += 0.5 * factor * (a(i, k) * a(j, l) + a(i, l) * a(j, k));
     }
   }

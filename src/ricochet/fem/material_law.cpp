@@ -28,7 +28,7 @@ void for_each_point(const StrainPacks& strains, const Work& work) {
     for (int lane = 0; lane < strains.width; ++lane) {
       Tensor strain = Tensor::Zero();
       for (int k = 0; k < strains.components(); ++k) {
-        const auto [i, j] = pack_components[static_cast<std::size_t>(k)];
+        const auto [i, j] = pack_components[std::size_t(k)];
         strain(i, j) = strain(j, i) = from[k * strains.width + lane];
       }
       work(pack, lane, strain);
@@ -50,7 +50,7 @@ void MaterialLaw::stresses(const StrainPacks& strains, double* result) const {
     stress(strain, of_point);
     double* const to = result + pack * strains.components() * strains.width + lane;
     for (int k = 0; k < strains.components(); ++k) {
-      const auto [i, j] = pack_components[static_cast<std::size_t>(k)];
+      const auto [i, j] = pack_components[std::size_t(k)];
       to[k * strains.width] = of_point(i, j);
     }
   });

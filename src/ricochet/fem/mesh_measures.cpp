@@ -22,7 +22,7 @@ Eigen::Vector3d position(const Mesh& mesh, Index node) {
 Eigen::Vector3d mean(const Mesh& mesh, const Index* nodes, int count) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < count; ++k) sum += position(mesh, nodes[k]);
-  return sum / static_cast<double>(count);
+  return sum / double(count);
 }
 
 /// Size, first moment and ∫n of one cell or facet; the sign of n follows from its numbering.
@@ -40,7 +40,7 @@ Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlo
   Integral result;
   const Index* const nodes = block.cell(cell);
   for (Index q = 0; q < rule.rule.weights.size(); ++q) {
-    const Matrix& gradients = rule.geometry.gradients[static_cast<std::size_t>(q)];
+    const Matrix& gradients = rule.geometry.gradients[std::size_t(q)];
     Matrix map = Matrix::Zero(mesh.dimension, gradients.cols());
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
     for (Index k = 0; k < gradients.rows(); ++k) {
@@ -61,16 +61,16 @@ Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlo
 /// Cells at the vertices of facets.
 class CellsOfFacets {
  public:
-  explicit CellsOfFacets(const Mesh& mesh) : mesh_(mesh), around_(static_cast<std::size_t>(mesh.node_count())) {
+  explicit CellsOfFacets(const Mesh& mesh) : mesh_(mesh), around_(std::size_t(mesh.node_count())) {
     std::vector<char> is_selected(around_.size(), 0);
     for (const CellBlock& block : mesh.facets) {
-      for (const Index node : block.nodes) is_selected[static_cast<std::size_t>(node)] = 1;
+      for (const Index node : block.nodes) is_selected[std::size_t(node)] = 1;
     }
     for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
       const CellBlock& block = mesh.cells[b];
       for (Index cell = 0; cell < block.size(); ++cell) {
         for (int v = 0; v < vertex_count(block.shape); ++v) {
-          const auto node = static_cast<std::size_t>(block.cell(cell)[v]);
+          const auto node = std::size_t(block.cell(cell)[v]);
           if (is_selected[node] != 0) around_[node].push_back({b, cell});
         }
       }
@@ -81,7 +81,7 @@ class CellsOfFacets {
   [[nodiscard]] std::pair<int, Eigen::Vector3d> find(const CellBlock& facets, Index facet) const {
     const Index* const nodes = facets.cell(facet);
     std::pair<int, Eigen::Vector3d> result{0, Eigen::Vector3d::Zero()};
-    for (const CellIndex& location : around_[static_cast<std::size_t>(nodes[0])]) {
+    for (const CellIndex& location : around_[std::size_t(nodes[0])]) {
       const CellBlock& block = mesh_.cells[location.block];
       const Index *const first = block.cell(location.cell), *const last = first + vertex_count(block.shape);
       const bool has_all = std::all_of(nodes, nodes + vertex_count(facets.shape),

@@ -25,7 +25,7 @@ Points centres_of_rings(const Body& body) {
       double volume = 0.0;
       result.col(number).setZero();
       for (Index q = 0; q < rule.rule.weights.size(); ++q) {
-        const Matrix& gradients = rule.geometry.gradients[static_cast<std::size_t>(q)];
+        const Matrix& gradients = rule.geometry.gradients[std::size_t(q)];
         const double weight = rule.rule.weights[q] * jacobian<2>(body.mesh->nodes, nodes, gradients).determinant() *
                               rule.ring(body.mesh->nodes, nodes, q);
         for (int k = 0; k < block.nodes_per_cell; ++k)
@@ -55,11 +55,11 @@ class Recovery {
     for (const CellBlock& block : body.space->cells) {
       for (Index cell = 0; cell < block.size(); ++cell) {
         cell_nodes_.emplace_back(block.cell(cell), block.nodes_per_cell);
-        const auto number = static_cast<Index>(cell_nodes_.size()) - 1;
+        const auto number = Index(cell_nodes_.size()) - 1;
         Vector centre = Vector::Zero(dimension_);
         for (int i = 0; i < block.nodes_per_cell; ++i) {
           centre += body.space->nodes.col(block.cell(cell)[i]);
-          ++count[static_cast<std::size_t>(block.cell(cell)[i]) + 1];
+          ++count[std::size_t(block.cell(cell)[i]) + 1];
         }
         centres_.col(number) = centre / block.nodes_per_cell;
       }
@@ -67,11 +67,10 @@ class Recovery {
     if (is_axisymmetric(body)) centres_ = centres_of_rings(body);
     for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
     first_ = count;
-    cells_.resize(static_cast<std::size_t>(first_.back()));
+    cells_.resize(std::size_t(first_.back()));
     for (std::size_t cell = 0; cell < cell_nodes_.size(); ++cell) {
       for (int i = 0; i < cell_nodes_[cell].second; ++i)
-        cells_[static_cast<std::size_t>(count[static_cast<std::size_t>(cell_nodes_[cell].first[i])]++)] =
-            static_cast<Index>(cell);
+        cells_[std::size_t(count[std::size_t(cell_nodes_[cell].first[i])]++)] = Index(cell);
     }
   }
 
@@ -89,15 +88,14 @@ class Recovery {
  private:
   template <class Visit>
   void visit_cells(Index node, const Visit& visit) const {
-    for (Index i = first_[static_cast<std::size_t>(node)]; i < first_[static_cast<std::size_t>(node) + 1]; ++i)
-      visit(cells_[static_cast<std::size_t>(i)]);
+    for (Index i = first_[std::size_t(node)]; i < first_[std::size_t(node) + 1]; ++i) visit(cells_[std::size_t(i)]);
   }
-  [[nodiscard]] int material(Index cell) const { return body_.cell_material[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] int material(Index cell) const { return body_.cell_material[std::size_t(cell)]; }
 
   void widen(int of_material, std::vector<Index>& patch) const {
     const std::vector<Index> before = patch;
     for (const Index cell : before) {
-      const auto& [nodes, count] = cell_nodes_[static_cast<std::size_t>(cell)];
+      const auto& [nodes, count] = cell_nodes_[std::size_t(cell)];
       for (int i = 0; i < count; ++i) {
         visit_cells(nodes[i], [&](Index other) {
           if (material(other) == of_material) patch.push_back(other);
@@ -131,19 +129,19 @@ class Recovery {
       best = std::move(found);
     }
     if (!best.empty()) return best;
-    for (const Index cell : nearest) best.emplace_back(cell, 1.0 / static_cast<double>(nearest.size()));
+    for (const Index cell : nearest) best.emplace_back(cell, 1.0 / double(nearest.size()));
     return best;
   }
 
   /// Returns no weights if the cells of the patch do not determine a linear function.
   Weights fit(Index node, const std::vector<Index>& patch) const {
-    const auto count = static_cast<Index>(patch.size());
+    const auto count = Index(patch.size());
     if (count <= dimension_) return {};
     Matrix columns(count, dimension_ + 1);
     columns.col(0).setOnes();
     for (Index i = 0; i < count; ++i) {
       columns.row(i).tail(dimension_) =
-          (centres_.col(patch[static_cast<std::size_t>(i)]) - body_.space->nodes.col(node)).transpose();
+          (centres_.col(patch[std::size_t(i)]) - body_.space->nodes.col(node)).transpose();
     }
     columns.rightCols(dimension_) /= columns.rightCols(dimension_).norm();
     const PivotedQr factor(columns, dependence);
@@ -151,7 +149,7 @@ class Recovery {
     // a = e₀ᵀ (columns)⁺ values: the first row of the pseudo-inverse.
     const Matrix inverse = factor.solve(Matrix(Matrix::Identity(count, count)));
     Weights result;
-    for (Index i = 0; i < count; ++i) result.emplace_back(patch[static_cast<std::size_t>(i)], inverse(0, i));
+    for (Index i = 0; i < count; ++i) result.emplace_back(patch[std::size_t(i)], inverse(0, i));
     return result;
   }
 
@@ -169,18 +167,18 @@ NodalRecovery make_nodal_recovery(const Body& body) {
   const Index nodes = body.space->node_count();
   std::vector<std::vector<std::vector<std::pair<Index, double>>>> weights(static_cast<std::size_t>(nodes));
   parallel_ranges(nodes, [&](Index first, Index last) {
-    for (Index node = first; node < last; ++node) weights[static_cast<std::size_t>(node)] = recovery.weights(node);
+    for (Index node = first; node < last; ++node) weights[std::size_t(node)] = recovery.weights(node);
   });
   NodalRecovery result;
   std::vector<Eigen::Triplet<double>> entries;
   for (Index node = 0; node < nodes; ++node) {
-    for (const auto& of_material : weights[static_cast<std::size_t>(node)]) {
-      const auto row = static_cast<int>(result.row_node.size());
-      for (const auto& [cell, weight] : of_material) entries.emplace_back(row, static_cast<int>(cell), weight);
+    for (const auto& of_material : weights[std::size_t(node)]) {
+      const auto row = int(result.row_node.size());
+      for (const auto& [cell, weight] : of_material) entries.emplace_back(row, int(cell), weight);
       result.row_node.push_back(node);
     }
   }
-  result.weights.resize(static_cast<Index>(result.row_node.size()), body.mesh->cell_count());
+  result.weights.resize(Index(result.row_node.size()), body.mesh->cell_count());
   result.weights.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
@@ -189,14 +187,14 @@ NodalStress::NodalStress(const Body& body) : body_(body), recovery_(make_nodal_r
 
 void NodalStress::fit(const std::vector<double>& cells, std::vector<double>& nodes) {
   using Tensor = Eigen::Matrix<double, tensor_components, 1>;
-  const auto count = static_cast<std::size_t>(body_.space->node_count());
+  const auto count = std::size_t(body_.space->node_count());
   nodes.assign(tensor_components * count, 0.0);
   von_mises_.assign(count, -1.0);
   for (Index row = 0; row < recovery_.weights.rows(); ++row) {
     Tensor sum = Tensor::Zero();
     for (SparseRowMatrix::InnerIterator entry(recovery_.weights, row); entry; ++entry)
       sum += entry.value() * Eigen::Map<const Tensor>(cells.data() + tensor_components * entry.col());
-    const auto node = static_cast<std::size_t>(recovery_.row_node[static_cast<std::size_t>(row)]);
+    const auto node = std::size_t(recovery_.row_node[std::size_t(row)]);
     const double value = von_mises_stress(sum.data());
     if (!(value > von_mises_[node])) continue;
     von_mises_[node] = value;
@@ -212,13 +210,13 @@ void NodalStress::claim(const std::vector<double>& cells) {
     const double own = von_mises_stress(cells.data() + tensor_components * cell);
     Index largest = nodes.front();
     for (const Index node : nodes) {
-      const double value = von_mises_[static_cast<std::size_t>(node)];
-      const double best = von_mises_[static_cast<std::size_t>(largest)];
+      const double value = von_mises_[std::size_t(node)];
+      const double best = von_mises_[std::size_t(largest)];
       if (value >= own) return;
-      const auto number = [&](Index each) { return body_.space->number[static_cast<std::size_t>(each)]; };
+      const auto number = [&](Index each) { return body_.space->number[std::size_t(each)]; };
       if (value > best || (value == best && number(node) < number(largest))) largest = node;
     }
-    const auto at = static_cast<std::size_t>(largest);
+    const auto at = std::size_t(largest);
     if (claim_[at] >= 0 && !(own > claimed_value_[at])) return;
     claim_[at] = cell;
     claimed_value_[at] = own;

@@ -21,8 +21,8 @@ struct NodeGraph {
   std::vector<Index> cell_begins;
   std::vector<int> cells;
 
-  [[nodiscard]] Index node_count() const { return static_cast<Index>(offsets.size()) - 1; }
-  [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
+  [[nodiscard]] Index node_count() const { return Index(offsets.size()) - 1; }
+  [[nodiscard]] Index parts() const { return Index(part_begins.size()) - 1; }
 };
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
 /// Restricts the graph to the cells with at least one selected node.

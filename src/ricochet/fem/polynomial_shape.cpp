@@ -35,7 +35,7 @@ void PolynomialShape::monomials(const double* point, double* terms) const {
 void PolynomialShape::values(const double* point, double* values) const {
   double terms[most_nodes];
   monomials(point, terms);
-  const auto count = static_cast<int>(coefficients_.rows());
+  const auto count = int(coefficients_.rows());
   const double* coefficient = coefficients_.data();
   for (int i = 0; i < count; ++i) values[i] = 0.0;
   for (int t = 0; t < terms_; ++t) {
@@ -47,7 +47,7 @@ template <int components>
 PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePositions& positions)
     : shape_(shape), origin_(positions.col(0)) {
   for (int t = 0; t < shape.terms_; ++t) {
-    At& sum = coefficients_[static_cast<std::size_t>(t)];
+    At& sum = coefficients_[std::size_t(t)];
     sum.setZero();
     for (Index k = 1; k < shape.node_count(); ++k) sum += shape.coefficients_(k, t) * (positions.col(k) - origin_);
   }
@@ -61,7 +61,7 @@ auto PolynomialMap<components>::evaluate(const double* point) const -> Evaluatio
   Evaluation result{origin_, {At::Zero(), At::Zero()}};
   for (int t = 0; t < shape_.terms_; ++t) {
     const int i = shape_.powers_[t][0], j = shape_.powers_[t][1];
-    const At& coefficient = coefficients_[static_cast<std::size_t>(t)];
+    const At& coefficient = coefficients_[std::size_t(t)];
     result.at += of_x[i] * of_y[j] * coefficient;
     result.slopes[0] += slope_x[i] * of_y[j] * coefficient;
     result.slopes[1] += of_x[i] * slope_y[j] * coefficient;

@@ -27,7 +27,7 @@ basix::cell::type basix_cell(CellShape shape) {
   while (!fits()) {
     if (type == basix::cell::type::pyramid)
       throw std::logic_error("Basix has no cell with the vertices of a " + name(shape));
-    type = static_cast<basix::cell::type>(static_cast<int>(type) + 1);
+    type = static_cast<basix::cell::type>(int(type) + 1);
   }
   return type;
 }
@@ -45,21 +45,21 @@ const basix::FiniteElement& basix_element(CellShape shape, int degree) {
 
 Tabulation ReferenceElement::tabulate(const Points& points) const {
   const basix::FiniteElement& element = basix_element(shape_, degree_);
-  const auto count = static_cast<std::size_t>(points.cols());
-  const auto dimension = static_cast<std::size_t>(points.rows());
+  const auto count = std::size_t(points.cols());
+  const auto dimension = std::size_t(points.rows());
   // Basix expects contiguous points, which the columns are.
   const auto [data, extents] =
       element.tabulate(1, std::span<const double>(points.data(), count * dimension), {count, dimension});
-  const auto nodes = static_cast<std::size_t>(node_count());
+  const auto nodes = std::size_t(node_count());
   Tabulation result;
   result.values.resize(node_count(), points.cols());
   result.gradients.assign(count, Matrix(node_count(), points.rows()));
   for (std::size_t p = 0; p < count; ++p) {
     for (std::size_t i = 0; i < nodes; ++i) {
-      const auto row = static_cast<Index>(i);
-      result.values(row, static_cast<Index>(p)) = data[p * nodes + i];
+      const auto row = Index(i);
+      result.values(row, Index(p)) = data[p * nodes + i];
       for (std::size_t k = 0; k < dimension; ++k) {
-        result.gradients[p](row, static_cast<Index>(k)) = data[((k + 1) * count + p) * nodes + i];
+        result.gradients[p](row, Index(k)) = data[((k + 1) * count + p) * nodes + i];
       }
     }
   }
@@ -68,7 +68,7 @@ Tabulation ReferenceElement::tabulate(const Points& points) const {
 
 ReferenceElement::ReferenceElement(CellShape shape, int degree) : shape_(shape), degree_(degree) {
   const auto [points, extents] = basix_element(shape, degree).points();
-  nodes_ = Eigen::Map<const Points>(points.data(), static_cast<Index>(extents[1]), static_cast<Index>(extents[0]));
+  nodes_ = Eigen::Map<const Points>(points.data(), Index(extents[1]), Index(extents[0]));
 }
 
 const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {
@@ -79,7 +79,7 @@ const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {
 QuadratureRule quadrature(CellShape shape, int degree) {
   prepare_blas();
   const auto [points, weights] = basix::quadrature::make_quadrature(basix_cell(shape), degree);
-  const auto count = static_cast<Index>(weights.size());
+  const auto count = Index(weights.size());
   QuadratureRule rule;
   rule.points = Eigen::Map<const Points>(points.data(), dimension(shape), count);
   rule.weights = Eigen::Map<const Vector>(weights.data(), count);

@@ -27,7 +27,7 @@ class ReferenceElement {
 
   [[nodiscard]] CellShape shape() const { return shape_; }
   [[nodiscard]] int degree() const { return degree_; }
-  [[nodiscard]] int node_count() const { return static_cast<int>(nodes_.cols()); }
+  [[nodiscard]] int node_count() const { return int(nodes_.cols()); }
   /// Node positions, dimension × nodes.
   [[nodiscard]] const Points& nodes() const { return nodes_; }
   [[nodiscard]] Tabulation tabulate(const Points& points) const;

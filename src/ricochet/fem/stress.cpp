@@ -29,8 +29,8 @@ void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector
   for (Index cell = 0; cell < geometry.size(); ++cell) {
     double volume = 0.0;
     for (Index q = 0; q < integration.rule.weights.size(); ++q) {
-      const auto map = jacobian<d>(body.mesh->nodes, geometry.cell(cell),
-                                   integration.geometry.gradients[static_cast<std::size_t>(q)]);
+      const auto map =
+          jacobian<d>(body.mesh->nodes, geometry.cell(cell), integration.geometry.gradients[std::size_t(q)]);
       volume += integration.rule.weights[q] * std::abs(map.determinant()) *
                 integration.ring(body.mesh->nodes, geometry.cell(cell), q);
     }
@@ -141,7 +141,7 @@ CellMeans<d> integrate(const BlockIntegration& integration, const Points& positi
     for (Index i = 0; i < shape.rows(); ++i)
       reference += displacement.segment<d>(nodes[i] * d) * shape.block<1, d>(i, 0);
     const Eigen::Matrix<double, d, d> strain = symmetric<d>(reference * map.inverse());
-    const auto point = static_cast<Index>(q);
+    const auto point = Index(q);
     const double hoop =
         integration.axisymmetric ? hoop_strain(integration, positions, geometry, nodes, point, displacement) : 0.0;
     const double weight =
@@ -237,7 +237,7 @@ LargestOfCells CellStress::largest_von_mises(const Vector& displacement, const V
 
 void CellStress::evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density,
                           const Vector& internal) const {
-  const auto count = static_cast<std::size_t>(body_.mesh->cell_count());
+  const auto count = std::size_t(body_.mesh->cell_count());
   stress.resize(tensor_components * count);
   energy_density.resize(count);
   for_each_block(body_, [&](std::size_t block, Index first) {

@@ -8,10 +8,9 @@
 namespace ricochet {
 
 TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
-    : ties_(std::move(ties)), tie_of_node_(static_cast<std::size_t>(node_count), -1) {
+    : ties_(std::move(ties)), tie_of_node_(std::size_t(node_count), -1) {
   std::ranges::sort(ties_, {}, &Tie::node);
-  for (std::size_t i = 0; i < ties_.size(); ++i)
-    tie_of_node_[static_cast<std::size_t>(ties_[i].node)] = static_cast<int>(i);
+  for (std::size_t i = 0; i < ties_.size(); ++i) tie_of_node_[std::size_t(ties_[i].node)] = int(i);
   // Each pass replaces nodes that are themselves tied; a chain is at most as long as there are contacts.
   constexpr int longest_chain = 16;
   for (int iteration = 0;; ++iteration) {
@@ -39,18 +38,18 @@ TiedNodes::Weights TiedNodes::spread(const Weights& weights) const {
       sums[node] += weight;
       continue;
     }
-    const Tie& tie = ties_[static_cast<std::size_t>(tie_of_node_[static_cast<std::size_t>(node)])];
+    const Tie& tie = ties_[std::size_t(tie_of_node_[std::size_t(node)])];
     for (const auto& [other, part] : tie.weights) sums[other] += weight * part;
   }
   return {sums.begin(), sums.end()};
 }
 
 SparseMatrix TiedNodes::condense(const SparseMatrix& matrix, int components) const {
-  const auto nodes = static_cast<Index>(tie_of_node_.size());
+  const auto nodes = Index(tie_of_node_.size());
   std::vector<Eigen::Triplet<double>> entries;
   const auto enter = [&](Index row, Index column, double value) {
     for (int k = 0; k < components; ++k)
-      entries.emplace_back(static_cast<int>(row * components + k), static_cast<int>(column * components + k), value);
+      entries.emplace_back(int(row * components + k), int(column * components + k), value);
   };
   for (Index node = 0; node < nodes; ++node) {
     if (!is_tied(node)) enter(node, node, 1.0);

@@ -26,9 +26,7 @@ class TiedNodes {
   TiedNodes(std::vector<Tie> ties, Index node_count);
 
   [[nodiscard]] bool empty() const { return ties_.empty(); }
-  [[nodiscard]] bool is_tied(Index node) const {
-    return !ties_.empty() && tie_of_node_[static_cast<std::size_t>(node)] >= 0;
-  }
+  [[nodiscard]] bool is_tied(Index node) const { return !ties_.empty() && tie_of_node_[std::size_t(node)] >= 0; }
   /// Ties by ascending node; their weights refer to untied nodes only.
   [[nodiscard]] const std::vector<Tie>& ties() const { return ties_; }
 

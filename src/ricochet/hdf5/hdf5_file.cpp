@@ -165,7 +165,7 @@ void Hdf5Reader::accept_fill_value(const Dataset& set, std::int64_t entries, std
       time == H5D_FILL_TIME_NEVER || value == H5D_FILL_VALUE_UNDEFINED)
     fail(set.name, "was never written and has no fill value");
   // Nothing in the file shows that it is really meant to be so large.
-  if (static_cast<std::uint64_t>(entries) * bytes_per_entry > file_size())
+  if (std::uint64_t(entries) * bytes_per_entry > file_size())
     fail(set.name,
          fmt::format("was never written, and its {} entries would need more space than the whole file", entries));
   log::warning(fmt::format("{}: {}: was never written; its fill value is read instead", path_, set.name));
@@ -181,8 +181,8 @@ void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::siz
   // A damaged header may claim more than the file holds; this is reported before memory is allocated for it.
   const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
   const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
-  const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
-  const auto needed = static_cast<std::uint64_t>(entries) * bytes_per_entry;
+  const auto stored = std::uint64_t(H5Dget_storage_size(set.set));
+  const auto needed = std::uint64_t(entries) * bytes_per_entry;
   if (entries > 0 && (stored == 0 || (!filtered && (stored < needed || needed > file_size()))))
     fail(set.name, fmt::format("the file does not hold its {} entries: it is truncated or damaged", entries));
 }
@@ -237,12 +237,12 @@ std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name, std::int
     for (const double value : numbers(set, expected_size)) {
       if (!(std::abs(value) < 0x1p53) || value != std::trunc(value))
         fail(name, fmt::format("entry {} is {}, which is not a whole number", result.size(), value));
-      result.push_back(static_cast<std::int64_t>(value));
+      result.push_back(std::int64_t(value));
     }
     return result;
   }
   check_size(set, expected_size, H5Tget_size(set.type));
-  result.resize(static_cast<std::size_t>(expected_size));
+  result.resize(std::size_t(expected_size));
   if (!result.empty() && H5Dread(set.set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
     fail(name, "cannot be read: the file is damaged");
   return result;
@@ -270,7 +270,7 @@ std::pair<Index, Index> Hdf5Reader::extents(const Dataset& set) const {
   if (rank != 1 && rank != 2) fail(set.name, fmt::format("has {} dimensions where one or two are expected", rank));
   hsize_t sizes[2] = {0, 0};
   H5Sget_simple_extent_dims(set.space, sizes, nullptr);
-  return {static_cast<Index>(sizes[0]), static_cast<Index>(sizes[1])};
+  return {Index(sizes[0]), Index(sizes[1])};
 }
 
 void Hdf5Reader::check_table(const Dataset& set, Index rows, Index columns) const {
@@ -290,7 +290,7 @@ void Hdf5Reader::read_table(const Hdf5Member& group, const std::string& name, In
   if (object < 0 || H5Iget_type(object) != H5I_GROUP) fail(group.name, "cannot be opened: the file is damaged");
   const Dataset set(*this, object, name, group.name + "/" + name);
   check_table(set, rows, columns);
-  values.resize(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
+  values.resize(std::size_t(rows * std::max<Index>(columns, 1)));
   if (!values.empty() && H5Dread(set.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     fail(set.name, "cannot be read: the file is damaged");
 }
@@ -349,7 +349,7 @@ std::string Hdf5Reader::text(const std::string& name) const {
   const hssize_t count = H5Sget_simple_extent_npoints(set.space);
   if (count < 0) fail(name, "the size of this dataset cannot be read: the file is damaged");
   std::string result;
-  for (const std::string& entry : texts(set, static_cast<std::size_t>(count)))
+  for (const std::string& entry : texts(set, std::size_t(count)))
     result += result.empty() || entry.empty() ? entry : "\n" + entry;
   return result;
 }
@@ -359,9 +359,9 @@ std::vector<std::string> Hdf5Reader::texts(const Dataset& set, std::size_t count
   if (count == 0) return result;
   const std::size_t length = H5Tget_size(set.type);
   if (H5Dget_storage_size(set.set) == 0)
-    accept_fill_value(set, static_cast<std::int64_t>(count), length);
+    accept_fill_value(set, std::int64_t(count), length);
   else
-    check_stored(set, static_cast<std::int64_t>(count), length);
+    check_stored(set, std::int64_t(count), length);
   if (H5Tis_variable_str(set.type) > 0) {
     std::vector<char*> values(count, nullptr);
     if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)

@@ -28,7 +28,7 @@ std::size_t Hdf5Rows::entries(Index first, Index count) const {
   const auto [rows, columns] = extents_;
   if (first < 0 || count < 0 || first + count > rows)
     file_.fail(name_, fmt::format("has {} rows where {} are expected", rows, first + count));
-  return static_cast<std::size_t>(count * std::max<Index>(columns, 1));
+  return std::size_t(count * std::max<Index>(columns, 1));
 }
 
 void Hdf5Rows::read(Index first, Index count, std::int64_t type, void* values) const {

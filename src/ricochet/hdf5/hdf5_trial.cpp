@@ -46,10 +46,10 @@ void read_texts(hid_t set, hid_t type, std::size_t count) {
 void read_values(hid_t set, hid_t type, hid_t space, Visit& visit) {
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   const bool is_number = H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT;
-  const auto size = static_cast<std::int64_t>(is_number ? sizeof(double) : H5Tget_size(type));
+  const auto size = std::int64_t(is_number ? sizeof(double) : H5Tget_size(type));
   if (count <= 0 || size <= 0 || count > visit.bytes_left / size) return;
   visit.bytes_left -= count * size;
-  if (H5Tis_variable_str(type) > 0) return read_texts(set, type, static_cast<std::size_t>(count));
+  if (H5Tis_variable_str(type) > 0) return read_texts(set, type, std::size_t(count));
   if (!is_number && H5Tget_class(type) != H5T_STRING) return;
   std::vector<char> values(static_cast<std::size_t>(count * size));
   static_cast<void>(H5Dread(set, is_number ? H5T_NATIVE_DOUBLE : type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
@@ -93,8 +93,7 @@ struct Stamp {
     constexpr double longest_tick = 0.1;
     struct timespec now {};
     clock_gettime(CLOCK_REALTIME, &now);
-    return static_cast<double>(now.tv_sec - changed) + 1e-9 * static_cast<double>(now.tv_nsec - changed_part) >
-           longest_tick;
+    return double(now.tv_sec - changed) + 1e-9 * double(now.tv_nsec - changed_part) > longest_tick;
   }
 };
 
@@ -112,7 +111,7 @@ void try_hdf5_file(const std::string& path) {
   const std::lock_guard lock(one_at_a_time);
   const std::optional<Stamp> stamp = stamp_of(path);
   if (const auto found = tried.find(path); stamp && found != tried.end() && found->second == *stamp) return;
-  const double size = stamp ? static_cast<double>(stamp->size) : 0.0;
+  const double size = stamp ? double(stamp->size) : 0.0;
   const TrialResult outcome = try_in_child([&path] { return open_all(path); }, least_seconds + seconds_per_byte * size);
   if (!outcome.succeeded) {
     throw Error(ErrorKind::invalid_input,

@@ -40,13 +40,13 @@ void put(std::string& text, Number number) {
 }
 
 void put_text(std::string& text, const std::string& value) {
-  put(text, static_cast<std::uint32_t>(value.size()));
+  put(text, std::uint32_t(value.size()));
   text += value;
 }
 
 template <class Number>
 void put_numbers(std::string& text, const Number* values, std::size_t count) {
-  put(text, static_cast<std::uint64_t>(count));
+  put(text, std::uint64_t(count));
   text.append(reinterpret_cast<const char*>(values), count * sizeof(Number));
 }
 
@@ -73,7 +73,7 @@ class Cursor {
   [[nodiscard]] std::size_t count(std::size_t entry_size) {
     const auto result = number<std::uint64_t>();
     if (result > text_.size() / entry_size) throw Error(ErrorKind::invalid_input, "a value is longer than the file");
-    return static_cast<std::size_t>(result);
+    return std::size_t(result);
   }
 
  private:
@@ -107,14 +107,14 @@ Snapshot::Value read_value(Cursor& cursor) {
 }
 
 void put_value(std::string& text, const Snapshot::Value& value) {
-  put(text, static_cast<std::uint8_t>(value.index()));
+  put(text, std::uint8_t(value.index()));
   if (const auto* reals = std::get_if<Vector>(&value)) {
-    put_numbers(text, reals->data(), static_cast<std::size_t>(reals->size()));
+    put_numbers(text, reals->data(), std::size_t(reals->size()));
   } else if (const auto* integers = std::get_if<Snapshot::Integers>(&value)) {
     put_numbers(text, integers->data(), integers->size());
   } else {
     const auto& texts = std::get<Snapshot::Texts>(value);
-    put(text, static_cast<std::uint64_t>(texts.size()));
+    put(text, std::uint64_t(texts.size()));
     for (const std::string& each : texts) put_text(text, each);
   }
 }
@@ -129,7 +129,7 @@ std::string encode_snapshot(const Snapshot& snapshot) {
   }
   std::string text(magic);
   put(text, format);
-  put(text, static_cast<std::uint64_t>(body.size()));
+  put(text, std::uint64_t(body.size()));
   text += body;
   put(text, checksum(text));
   return text;

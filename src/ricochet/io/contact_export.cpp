@@ -95,7 +95,7 @@ std::vector<std::string> exported_contact_problems(const std::string& directory)
 
 void write_contact_problem(const std::string& path, const ContactProblem& problem, const ContactSolution& solution,
                            const ContactProvenance& provenance, long step, const std::string& remark, int stage) {
-  const double time = static_cast<double>(step) * provenance.step_size;
+  const double time = double(step) * provenance.step_size;
   FclibProblem file = make_fclib(problem, provenance.dimension, &solution);
   remove_scale(file, problem.reaction_scale);
   file.title = fmt::format("{}: step {}{}, t = {:.9g}", provenance.title, step,

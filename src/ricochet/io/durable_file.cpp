@@ -74,7 +74,7 @@ void write_all(const std::string& path, int descriptor, const std::string& conte
     const ssize_t written = write(descriptor, content.data() + done, content.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) throw_file_error(path, "write", errno);
-    done += static_cast<std::size_t>(written);
+    done += std::size_t(written);
   }
 }
 

@@ -26,7 +26,7 @@ void FileChangeDetector::expect_present_size() {
   struct stat file {};
   if (stat(path_.c_str(), &file) != 0) throw_file_error(path_, "access", errno);
   if (file.st_size < size_)
-    refuse(fmt::format("has {} bytes, but this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
+    refuse(fmt::format("has {} bytes, but this run has written {}", std::int64_t(file.st_size), size_));
   if (knows_end_ && ends_with_zeros()) refuse("has zeros in place of data that this run has written");
   size_ = file.st_size;
   knows_end_ = !ends_with_zeros();
@@ -36,7 +36,7 @@ void FileChangeDetector::expect_present_size() {
 bool FileChangeDetector::ends_with_zeros() const {
   std::array<char, 512> end{};
   std::ifstream file(path_, std::ios::binary);
-  file.seekg(std::max<std::int64_t>(size_ - static_cast<std::int64_t>(end.size()), 0));
+  file.seekg(std::max<std::int64_t>(size_ - std::int64_t(end.size()), 0));
   file.read(end.data(), end.size());
   return std::ranges::all_of(end, [](char c) { return c == '\0'; });
 }
@@ -49,7 +49,7 @@ void FileChangeDetector::require_unchanged() const {
   }
   if (file.st_dev != device_ || file.st_ino != number_) refuse("is not the file that this run has been writing");
   if (file.st_size != size_)
-    refuse(fmt::format("has {} bytes, but this run has written {}", static_cast<std::int64_t>(file.st_size), size_));
+    refuse(fmt::format("has {} bytes, but this run has written {}", std::int64_t(file.st_size), size_));
 }
 
 void FileChangeDetector::refuse(const std::string& state) const {

@@ -58,7 +58,7 @@ void set_hdf5_frame_properties(std::int64_t properties, const DatasetLayout& lay
   }
   if (compressed) {
     H5Pset_shuffle(properties);
-    H5Pset_deflate(properties, static_cast<unsigned>(options.compression));
+    H5Pset_deflate(properties, unsigned(options.compression));
   } else {
     H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
   }
@@ -69,7 +69,7 @@ FrameExtent hdf5_chunk_extent(std::int64_t set, Index first_row, bool& good) {
   haddr_t address = 0;
   hsize_t size = 0;
   good = good && H5Dflush(set) >= 0 && H5Dget_chunk_info_by_coord(set, origin, nullptr, &address, &size) >= 0;
-  return {static_cast<std::int64_t>(address), static_cast<std::int64_t>(size)};
+  return {std::int64_t(address), std::int64_t(size)};
 }
 
 }  // namespace ricochet

@@ -47,7 +47,7 @@ void copy_gaps(const std::string& from_path, const std::string& to_path, const s
   std::fstream to(to_path, std::ios::binary | std::ios::in | std::ios::out);
   std::vector<char> bytes;
   const auto copy = [&](std::int64_t begin, std::int64_t end) {
-    bytes.resize(static_cast<std::size_t>(std::max<std::int64_t>(end - begin, 0)));
+    bytes.resize(std::size_t(std::max<std::int64_t>(end - begin, 0)));
     from.seekg(begin);
     from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     to.seekp(begin);
@@ -124,11 +124,11 @@ void FrameFile::persist(const SnapshotVisitor& visit) {
   visit("frames", frames_);
   visit("stored_sizes", stored_sizes_, {0, std::int64_t{1} << 40});
   visit("checksums", checksums_, {0, 0xffffffff});
-  const std::size_t expected = options_.compression > 0 ? static_cast<std::size_t>(frames_) * layout_.size() : 0;
+  const std::size_t expected = options_.compression > 0 ? std::size_t(frames_) * layout_.size() : 0;
   visit.require(
       stored_sizes_.size() == expected, "stored_sizes",
       fmt::format("has {} sizes for {} frames of {} datasets", stored_sizes_.size(), frames_, layout_.size()));
-  visit.require(static_cast<long>(checksums_.size()) == frames_, "checksums", "does not have one checksum per frame");
+  visit.require(long(checksums_.size()) == frames_, "checksums", "does not have one checksum per frame");
   if (!arrangement_->keeps_times()) return;
   if (visit.loads()) times_.resize(checksums_.size());
   visit.numbers("times", times_);
@@ -137,7 +137,7 @@ void FrameFile::persist(const SnapshotVisitor& visit) {
 void FrameFile::create(const std::string& path, const std::vector<FixedDataset>& fixed) const {
   quiet_hdf5();
   std::int64_t bytes = administration;
-  for (const FixedDataset& set : fixed) bytes += 8 * static_cast<std::int64_t>(set.reals.size() + set.integers.size());
+  for (const FixedDataset& set : fixed) bytes += 8 * std::int64_t(set.reals.size() + set.integers.size());
   { std::ofstream(path, std::ios::binary | std::ios::trunc); }
   reserve_space(path, bytes);
   const Hdf5Handle access = file_access(options_);
@@ -188,11 +188,11 @@ std::uint32_t FrameFile::checksum(const std::vector<FrameExtent>& extents,
   for (std::size_t i = 0; i < layout_.size(); ++i) {
     const FrameExtent& extent = extents[i];
     if (values != nullptr && is_as_in_memory(layout_[i], options_)) {
-      sum.add_bytes((*values)[i], static_cast<std::size_t>(extent.size));
+      sum.add_bytes((*values)[i], std::size_t(extent.size));
       continue;
     }
     if (!file.is_open()) file.open(path_, std::ios::binary);
-    bytes.resize(static_cast<std::size_t>(extent.size));
+    bytes.resize(std::size_t(extent.size));
     file.seekg(extent.address);
     if (!file.read(bytes.data(), extent.size)) throw_file_error(path_, "read", errno);
     sum.add_bytes(bytes.data(), bytes.size());
@@ -203,10 +203,8 @@ std::uint32_t FrameFile::checksum(const std::vector<FrameExtent>& extents,
 /// `extents`: those of all frames, one after the other.
 void FrameFile::require_same(const std::vector<FrameExtent>& extents) const {
   for (long frame = 0; frame < frames_; ++frame) {
-    const auto first = extents.begin() + frame * static_cast<long>(layout_.size());
-    if (checksum({first, first + static_cast<long>(layout_.size())}, nullptr) ==
-        checksums_[static_cast<std::size_t>(frame)])
-      continue;
+    const auto first = extents.begin() + frame * long(layout_.size());
+    if (checksum({first, first + long(layout_.size())}, nullptr) == checksums_[std::size_t(frame)]) continue;
     throw Error(
         ErrorKind::file_access,
         fmt::format(
@@ -250,12 +248,12 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed, Repair repair) co
     std::vector<FrameExtent> retained;
     for (long frame = 0; frame < frames_; ++frame) {
       const std::int64_t* sizes =
-          options_.compression > 0 ? stored_sizes_.data() + static_cast<std::size_t>(frame) * layout_.size() : nullptr;
-      const double time = times_.empty() ? 0.0 : times_[static_cast<std::size_t>(frame)];
+          options_.compression > 0 ? stored_sizes_.data() + std::size_t(frame) * layout_.size() : nullptr;
+      const double time = times_.empty() ? 0.0 : times_[std::size_t(frame)];
       const std::vector<FrameExtent> extents = write_frame(pattern, {frame, time, nullptr, sizes});
       retained.insert(retained.end(), extents.begin(), extents.end());
     }
-    const auto size = static_cast<std::int64_t>(std::filesystem::file_size(pattern));
+    const auto size = std::int64_t(std::filesystem::file_size(pattern));
     require_length(path_, size);
     require_same(retained);
     if (repair == Repair::verify) {

@@ -67,7 +67,7 @@ class FrameGroups : public FrameArrangement {
     if (chunked) {
       extent = hdf5_chunk_extent(set, 0, good);
     } else if (layout.rows > 0) {
-      extent = {static_cast<std::int64_t>(H5Dget_offset(set)), static_cast<std::int64_t>(H5Dget_storage_size(set))};
+      extent = {std::int64_t(H5Dget_offset(set)), std::int64_t(H5Dget_storage_size(set))};
     }
     check_written(path, good, full_name);
     return extent;

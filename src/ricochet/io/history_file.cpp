@@ -81,12 +81,12 @@ void HistoryWriter::sync() {
 
 long last_history_step(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = static_cast<std::int64_t>(file.tellg());
+  const auto size = std::int64_t(file.tellg());
   std::string tail;
   // Reads increasing parts of the end until they contain a whole row.
   for (std::int64_t length = 0; length < size;) {
     length = std::min<std::int64_t>(std::max<std::int64_t>(8 * length, 4096), size);
-    tail.resize(static_cast<std::size_t>(length));
+    tail.resize(std::size_t(length));
     file.seekg(size - length);
     if (!file.read(tail.data(), length)) return 0;
     const std::size_t end = tail.rfind('\n');

@@ -40,32 +40,32 @@ void LineChecksums::persist(const SnapshotVisitor& visit, std::string file_name)
   }
   lines("file", file_name);
   lines("sums", sums, {0, 0xffffffff});
-  lines("lengths", lengths, {0, std::int64_t{1} << 50}, static_cast<Index>(sums.size()));
+  lines("lengths", lengths, {0, std::int64_t{1} << 50}, Index(sums.size()));
   lines("pieces", pieces_);
   lines("per_block", pieces_per_block_);
   if (!visit.loads()) return;
-  const auto count = static_cast<std::int64_t>(sums.size());
+  const auto count = std::int64_t(sums.size());
   lines.require(sums.size() <= most_blocks && pieces_per_block_ >= 1 && pieces_ <= count * pieces_per_block_ &&
                     pieces_ > (count - 1) * pieces_per_block_,
                 "sums", "do not belong to so many lines");
   blocks_.clear();
   length_ = 0;
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    blocks_.push_back({static_cast<std::uint32_t>(sums[i]), lengths[i]});
+    blocks_.push_back({std::uint32_t(sums[i]), lengths[i]});
     length_ += lengths[i];
   }
 }
 
 void LineChecksums::add(std::string_view piece) {
-  if (pieces_ == static_cast<std::int64_t>(blocks_.size()) * pieces_per_block_) {
+  if (pieces_ == std::int64_t(blocks_.size()) * pieces_per_block_) {
     if (blocks_.size() == most_blocks) merge_blocks();
-    if (pieces_ == static_cast<std::int64_t>(blocks_.size()) * pieces_per_block_) blocks_.emplace_back();
+    if (pieces_ == std::int64_t(blocks_.size()) * pieces_per_block_) blocks_.emplace_back();
   }
   Block& block = blocks_.back();
   const auto* const bytes = reinterpret_cast<const unsigned char*>(piece.data());
-  block.sum = static_cast<std::uint32_t>(crc32_z(block.sum, bytes, piece.size()));
-  block.length += static_cast<std::int64_t>(piece.size());
-  length_ += static_cast<std::int64_t>(piece.size());
+  block.sum = std::uint32_t(crc32_z(block.sum, bytes, piece.size()));
+  block.length += std::int64_t(piece.size());
+  length_ += std::int64_t(piece.size());
   ++pieces_;
 }
 
@@ -73,8 +73,7 @@ void LineChecksums::add(std::string_view piece) {
 void LineChecksums::merge_blocks() {
   for (std::size_t i = 0; i < most_blocks / 2; ++i) {
     const Block first = blocks_[2 * i], second = blocks_[2 * i + 1];
-    blocks_[i] = {static_cast<std::uint32_t>(crc32_combine(first.sum, second.sum, second.length)),
-                  first.length + second.length};
+    blocks_[i] = {std::uint32_t(crc32_combine(first.sum, second.sum, second.length)), first.length + second.length};
   }
   blocks_.resize(most_blocks / 2);
   pieces_per_block_ *= 2;
@@ -88,7 +87,7 @@ void LineChecksums::require_same(const std::string& path) const {
   std::string block;
   std::int64_t line = 1;
   for (const Block& expected : blocks_) {
-    block.resize(static_cast<std::size_t>(expected.length));
+    block.resize(std::size_t(expected.length));
     if (!file.read(block.data(), expected.length)) throw_file_error(path, "read", errno);
     const std::int64_t last = std::max(line, line + std::ranges::count(block, '\n') - 1);
     if (Checksum().add(block.data(), block.size()).value() != expected.sum) {

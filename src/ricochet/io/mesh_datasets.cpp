@@ -12,10 +12,10 @@ namespace {
 
 FixedDataset node_positions(const DisplacementSpace& space) {
   FixedDataset set{"/mesh/nodes", space.node_count(), 3, {}, {}};
-  set.reals.assign(static_cast<std::size_t>(3 * space.node_count()), 0.0);
+  set.reals.assign(std::size_t(3 * space.node_count()), 0.0);
   for (Index i = 0; i < space.node_count(); ++i) {
-    const Index row = space.number[static_cast<std::size_t>(i)];
-    for (int k = 0; k < space.dimension; ++k) set.reals[static_cast<std::size_t>(3 * row + k)] = space.nodes(k, i);
+    const Index row = space.number[std::size_t(i)];
+    for (int k = 0; k < space.dimension; ++k) set.reals[std::size_t(3 * row + k)] = space.nodes(k, i);
   }
   return set;
 }
@@ -35,18 +35,18 @@ FixedDataset connectivity(const DisplacementSpace& space, const std::string& nam
     for (const Index i : part.members) {
       if (mixed) set.integers.push_back(file_type(shape, space.degree).xdmf_number);
       for (const int k : vtk_nodes(shape, space.degree))
-        set.integers.push_back(space.number[static_cast<std::size_t>(part.block->cell(i)[k])]);
+        set.integers.push_back(space.number[std::size_t(part.block->cell(i)[k])]);
     }
   }
   set.columns = mixed ? 0 : parts.front().block->nodes_per_cell;
-  set.rows = static_cast<Index>(set.integers.size()) / std::max<Index>(set.columns, 1);
+  set.rows = Index(set.integers.size()) / std::max<Index>(set.columns, 1);
   return set;
 }
 
 FixedDataset cells_of(const DisplacementSpace& space) {
   std::vector<Part> parts;
   for (const CellBlock& block : space.cells) {
-    parts.push_back({&block, std::vector<Index>(static_cast<std::size_t>(block.size()))});
+    parts.push_back({&block, std::vector<Index>(std::size_t(block.size()))});
     std::iota(parts.back().members.begin(), parts.back().members.end(), Index{0});
   }
   return connectivity(space, "/mesh/cells", parts);
@@ -57,7 +57,7 @@ FixedDataset element_numbers(const DisplacementSpace& space) {
   FixedDataset set{"/mesh/element", 0, 0, {}, {}};
   for (const CellBlock& block : space.cells)
     set.integers.insert(set.integers.end(), block.tags.begin(), block.tags.end());
-  set.rows = static_cast<Index>(set.integers.size());
+  set.rows = Index(set.integers.size());
   return set;
 }
 
@@ -79,17 +79,16 @@ struct VtkHdfCells {
 
   /// Ends a cell whose nodes have been added to `connectivity`.
   void end_cell(int type) {
-    offsets.integers.push_back(static_cast<std::int64_t>(connectivity.integers.size()));
+    offsets.integers.push_back(std::int64_t(connectivity.integers.size()));
     types.integers.push_back(type);
   }
   [[nodiscard]] std::vector<FixedDataset> datasets(Index points) {
     const auto count = [](const char* name, Index value) { return FixedDataset{name, 1, 0, {}, {value}}; };
-    std::vector<FixedDataset> result{
-        count("/VTKHDF/NumberOfPoints", points),
-        count("/VTKHDF/NumberOfCells", static_cast<Index>(types.integers.size())),
-        count("/VTKHDF/NumberOfConnectivityIds", static_cast<Index>(connectivity.integers.size()))};
+    std::vector<FixedDataset> result{count("/VTKHDF/NumberOfPoints", points),
+                                     count("/VTKHDF/NumberOfCells", Index(types.integers.size())),
+                                     count("/VTKHDF/NumberOfConnectivityIds", Index(connectivity.integers.size()))};
     for (FixedDataset* set : {&connectivity, &offsets, &types}) {
-      set->rows = static_cast<Index>(set->integers.size());
+      set->rows = Index(set->integers.size());
       result.push_back(std::move(*set));
     }
     return result;
@@ -109,7 +108,7 @@ std::vector<FixedDataset> vtkhdf_mesh_datasets(const DisplacementSpace& space) {
   for (const CellBlock& block : space.cells) {
     for (Index i = 0; i < block.size(); ++i) {
       for (const int k : vtk_nodes(block.shape, space.degree))
-        cells.connectivity.integers.push_back(space.number[static_cast<std::size_t>(block.cell(i)[k])]);
+        cells.connectivity.integers.push_back(space.number[std::size_t(block.cell(i)[k])]);
       cells.end_cell(file_type(block.shape, space.degree).vtk);
     }
   }
@@ -124,7 +123,7 @@ std::vector<FixedDataset> vtkhdf_cell_datasets(Index points, const std::vector<i
   VtkHdfCells result;
   for (const int node : cells) {
     result.connectivity.integers.push_back(node);
-    if (result.connectivity.integers.size() % static_cast<std::size_t>(nodes_per_cell) == 0) result.end_cell(type);
+    if (result.connectivity.integers.size() % std::size_t(nodes_per_cell) == 0) result.end_cell(type);
   }
   return result.datasets(points);
 }

@@ -20,8 +20,8 @@ ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const ObstacleSurface surface = obstacles_[i]->surface(centre, radius);
     corners_ = surface.corners();
-    for (const int corner : surface.cells) cells_.push_back(static_cast<int>(point_count_) + corner);
-    numbers_.resize(cells_.size() / static_cast<std::size_t>(corners_), static_cast<int>(i));
+    for (const int corner : surface.cells) cells_.push_back(int(point_count_) + corner);
+    numbers_.resize(cells_.size() / std::size_t(corners_), int(i));
     point_count_ += surface.points.cols();
     points_.push_back(surface.points);
   }
@@ -38,7 +38,7 @@ ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
 
 std::vector<double> ObstacleSurfaces::positions(double time, const Vector& displacement) const {
   std::vector<double> result;
-  result.reserve(static_cast<std::size_t>(3 * point_count_));
+  result.reserve(std::size_t(3 * point_count_));
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Points points = obstacles_[i]->surface_points(points_[i], time, displacement);
     for (const auto point : points.colwise())

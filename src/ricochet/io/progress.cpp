@@ -24,7 +24,7 @@ void show(const std::string& text) {
 
 std::string duration_text(double seconds) {
   if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
-  const long whole = static_cast<long>(seconds);
+  const long whole = long(seconds);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
@@ -35,14 +35,14 @@ Progress::Progress(long steps, double end, bool quiet, long first_step, double f
       first_done_(done(first_step, first_time)),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
-      next_tenth_(static_cast<int>(first_done_ * 10.0) + 1) {}
+      next_tenth_(int(first_done_ * 10.0) + 1) {}
 
 Progress::~Progress() {
   if (open_) std::fputc('\n', stderr);
 }
 
 double Progress::done(long step, double time) const {
-  if (steps_ > 0) return static_cast<double>(step) / static_cast<double>(steps_);
+  if (steps_ > 0) return double(step) / double(steps_);
   return std::min(1.0, time / end_);
 }
 
@@ -54,7 +54,7 @@ void Progress::update(long step, double time) {
   } else {
     if (part * 10.0 < next_tenth_ && now - last_drawn_ < (has_drawn_ ? longest_silence : first_silence)) return;
     has_drawn_ = true;
-    next_tenth_ = static_cast<int>(part * 10.0) + 1;
+    next_tenth_ = int(part * 10.0) + 1;
   }
   last_drawn_ = now;
   draw(step, time);
@@ -72,7 +72,7 @@ void Progress::draw(long step, double time) {
     return;
   }
   constexpr int width = 30;
-  const int filled = static_cast<int>(part * width);
+  const int filled = int(part * width);
   show(fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", width - filled, numbers));
   open_ = true;
 }

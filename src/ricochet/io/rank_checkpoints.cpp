@@ -131,12 +131,12 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
     std::optional<Snapshot> snapshot;
     std::string why = "the manifest is damaged, or belongs to another run";
     std::optional<VersionError> other_version;
-    if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
+    if (manifest.checksums.size() == std::size_t(ranks.size())) {
       const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
       try {
         const std::string checksum = checksum_of(path);
         if (checksum.empty()) throw Error(ErrorKind::file_access, fmt::format("{}: it cannot be read", path));
-        if (checksum != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
+        if (checksum != manifest.checksums[std::size_t(ranks.rank())])
           throw Error(ErrorKind::invalid_input,
                       fmt::format("{}: its checksum differs from that in the manifest", path));
         snapshot = read_checkpoint(path);
@@ -172,7 +172,7 @@ std::optional<CheckpointFile> newest_manifest(const std::string& directory) {
 
 int ranks_of_checkpoints(const std::string& directory) {
   for (const Manifest& manifest : manifests(directory)) {
-    if (!manifest.checksums.empty()) return static_cast<int>(manifest.checksums.size());
+    if (!manifest.checksums.empty()) return int(manifest.checksums.size());
   }
   return 0;
 }

@@ -66,10 +66,10 @@ GatheredFields::GatheredFields(const Ranks& ranks, std::vector<Field> own, const
                                const std::vector<Index>& cell_rows, Index nodes, Index cells)
     : ranks_(ranks), own_(std::move(own)) {
   std::vector<Index> owned, every;
-  for (Index node = 0; node < static_cast<Index>(node_rows.size()); ++node) {
+  for (Index node = 0; node < Index(node_rows.size()); ++node) {
     if (ranks.is_owned(node)) owned.push_back(node);
   }
-  for (Index cell = 0; cell < static_cast<Index>(cell_rows.size()); ++cell) every.push_back(cell);
+  for (Index cell = 0; cell < Index(cell_rows.size()); ++cell) every.push_back(cell);
   nodes_ = rows_of(owned, node_rows);
   cells_ = rows_of(every, cell_rows);
   reals_.resize(own_.size());
@@ -77,7 +77,7 @@ GatheredFields::GatheredFields(const Ranks& ranks, std::vector<Field> own, const
   for (std::size_t i = 0; ranks.is_first() && i < own_.size(); ++i) {
     Field field = own_[i];
     field.rows = field.location == FieldLocation::nodes ? nodes : cells;
-    const auto count = static_cast<std::size_t>(field.rows * field.components);
+    const auto count = std::size_t(field.rows * field.components);
     if (field.is_integer) {
       integers_[i].assign(count, 0);
       field.values = integers_[i].data();
@@ -93,7 +93,7 @@ GatheredFields::Rows GatheredFields::rows_of(const std::vector<Index>& own,
                                              const std::vector<Index>& global_rows) const {
   Rows rows{own, {}};
   Ranks::ForEach<std::int64_t> messages(static_cast<std::size_t>(ranks_.size()));
-  for (const Index row : own) messages.front().push_back(global_rows[static_cast<std::size_t>(row)]);
+  for (const Index row : own) messages.front().push_back(global_rows[std::size_t(row)]);
   for (std::vector<std::int64_t>& from : ranks_.exchange(std::move(messages)))
     rows.all.emplace_back(from.begin(), from.end());
   return rows;
@@ -108,7 +108,7 @@ void GatheredFields::gather() {
     std::vector<double>& message = messages.front();
     for (const Index row : rows.own) {
       for (Index k = row * n; k < (row + 1) * n; ++k)
-        message.push_back(field.is_integer ? static_cast<double>(static_cast<const int*>(field.values)[k])
+        message.push_back(field.is_integer ? double(static_cast<const int*>(field.values)[k])
                                            : static_cast<const double*>(field.values)[k]);
     }
     const Ranks::ForEach<double> received = ranks_.exchange(std::move(messages));
@@ -118,9 +118,9 @@ void GatheredFields::gather() {
       for (const Index row : rows.all[rank]) {
         for (Index k = row * n; k < (row + 1) * n; ++k, ++from) {
           if (field.is_integer) {
-            integers_[i][static_cast<std::size_t>(k)] = static_cast<int>(*from);
+            integers_[i][std::size_t(k)] = int(*from);
           } else {
-            reals_[i][static_cast<std::size_t>(k)] = *from;
+            reals_[i][std::size_t(k)] = *from;
           }
         }
       }
@@ -221,14 +221,14 @@ ResultsSize results_size(const Body& body, const SemidiscreteProblem& problem, c
   const double real = options.file.single ? sizeof(float) : sizeof(double);
   for (const auto& source : make_field_sources({body, problem, expand_field_names(options.fields)})) {
     for (const Field& field : source->fields()) {
-      const auto rows = static_cast<double>(field.location == FieldLocation::nodes ? nodes : cells);
+      const auto rows = double(field.location == FieldLocation::nodes ? nodes : cells);
       size.frame += header + rows * field.components * (field.is_integer ? sizeof(int) : real);
     }
   }
   double own = 0.0;
   for (const FixedDataset& set : mesh_datasets(*body.space, problem.contact))
-    own += sizeof(double) * static_cast<double>(set.reals.size() + set.integers.size());
-  size.mesh += own * static_cast<double>(nodes) / static_cast<double>(body.space->node_count());
+    own += sizeof(double) * double(set.reals.size() + set.integers.size());
+  size.mesh += own * double(nodes) / double(body.space->node_count());
   return size;
 }
 

@@ -33,7 +33,7 @@ struct GlobalBody {
 /// Estimated bytes of the fields without compression.
 struct ResultsSize {
   double mesh = 0.0, frame = 0.0;
-  [[nodiscard]] double of(long frames) const { return mesh + static_cast<double>(frames) * frame; }
+  [[nodiscard]] double of(long frames) const { return mesh + double(frames) * frame; }
 };
 
 /// Estimate for the whole body, of `nodes` and `cells`; `body` may be one rank's part.

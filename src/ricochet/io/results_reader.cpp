@@ -35,7 +35,7 @@ class Connectivity {
         const CellShape shape =
             shape_of([this, number](CellShape s) { return file_type(s, degree_).xdmf_number == number; },
                      fmt::format("cells of XDMF type {}", number));
-        const auto size = static_cast<std::size_t>(node_count(shape, degree_));
+        const auto size = std::size_t(node_count(shape, degree_));
         if (at + size > list.size()) file_.fail(name_, "the last cell is incomplete");
         append(shape, list.data() + at);
         at += size;
@@ -64,9 +64,9 @@ class Connectivity {
     for (std::size_t k = 0; k < order_.size(); ++k) {
       if (in_file[k] < 0 || in_file[k] >= nodes_)
         file_.fail(name_, fmt::format("node {} does not exist: the number of nodes is {}", in_file[k], nodes_));
-      block.nodes[begin + static_cast<std::size_t>(order_[k])] = static_cast<Index>(in_file[k]);
+      block.nodes[begin + std::size_t(order_[k])] = Index(in_file[k]);
     }
-    block.tags.push_back(static_cast<std::int64_t>(block.tags.size()) + 1);
+    block.tags.push_back(std::int64_t(block.tags.size()) + 1);
   }
 
   const Hdf5Reader& file_;

@@ -27,7 +27,7 @@ std::string RunSummary::mass_text() const {
 
 ColumnDigest RunSummary::digest(const std::string& column) const {
   const auto at = std::ranges::find(columns, column);
-  const auto i = static_cast<std::size_t>(at - columns.begin());
+  const auto i = std::size_t(at - columns.begin());
   return i < digests.size() ? digests[i] : ColumnDigest{};
 }
 
@@ -48,7 +48,7 @@ double largest_size(const RunSummary& summary, const Columns& columns) {
 double RunSummary::part_done() const {
   if (status == "done") return 1.0;
   if (adaptive) return end_time > 0.0 ? std::clamp(adaptive->time / end_time, 0.0, 1.0) : 0.0;
-  return all_steps > 0 ? std::clamp(static_cast<double>(steps) / static_cast<double>(all_steps), 0.0, 1.0) : 0.0;
+  return all_steps > 0 ? std::clamp(double(steps) / double(all_steps), 0.0, 1.0) : 0.0;
 }
 
 double RunSummary::delay_of(const std::string& column) const {

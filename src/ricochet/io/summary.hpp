@@ -177,7 +177,7 @@ struct RunSummary {
   /// Whether the history has a row. Before, nothing is known of energies, rotations and penetration.
   [[nodiscard]] bool is_recorded() const { return !columns.empty(); }
   /// Time that the run has reached.
-  [[nodiscard]] double time() const { return adaptive ? adaptive->time : static_cast<double>(steps) * step; }
+  [[nodiscard]] double time() const { return adaptive ? adaptive->time : double(steps) * step; }
   /// Completed fraction of the run, 0 to 1.
   [[nodiscard]] double part_done() const;
   /// Offset of the values of this column from the time of their row: energies and forces are those at the scheme's own
@@ -186,9 +186,7 @@ struct RunSummary {
   /// First impact with a restitution, and the one with the largest force; null if there is none.
   [[nodiscard]] const Impact* first_restitution() const;
   [[nodiscard]] const Impact* hardest_impact() const;
-  [[nodiscard]] std::size_t number_of(const Impact& impact) const {
-    return static_cast<std::size_t>(&impact - impacts.data());
-  }
+  [[nodiscard]] std::size_t number_of(const Impact& impact) const { return std::size_t(&impact - impacts.data()); }
   /// Scale of the energy account: maximum of |first|, |minimum|, |maximum| of total, kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
   /// Returns false if, when an impact (numbered from 0) ended, cells had rotated too far for small strain, or the

@@ -89,9 +89,9 @@ void describe_motion(SummaryVisitor& visit, RigidMotionState& before, RigidMotio
 
 const RigidBody& rigid_body(SummaryVisitor& visit, int body) {
   const std::vector<BodyDescription>& bodies = visit.run().bodies;
-  if (body < 0 || body >= static_cast<int>(bodies.size()))
+  if (body < 0 || body >= int(bodies.size()))
     throw Json::Exception(fmt::format("an impact refers to body {}, which is not listed", body));
-  return bodies[static_cast<std::size_t>(body)].rigid;
+  return bodies[std::size_t(body)].rigid;
 }
 
 /// Other body of an impact between two bodies.

@@ -70,11 +70,11 @@ void SummaryVisitor::convert_components(Json& json, Eigen::Vector3d& value, int 
   if (reads()) {
     require_array(json);
     value.setZero();
-    count = static_cast<int>(std::min<std::size_t>(json.size(), 3));
+    count = int(std::min<std::size_t>(json.size(), 3));
   } else {
-    json = Json(std::vector<Json>(static_cast<std::size_t>(count)));
+    json = Json(std::vector<Json>(std::size_t(count)));
   }
-  for (int k = 0; k < count; ++k) convert(json[static_cast<std::size_t>(k)], value[k]);
+  for (int k = 0; k < count; ++k) convert(json[std::size_t(k)], value[k]);
 }
 
 void SummaryVisitor::convert(Json& json, Spin& spin) {
@@ -101,7 +101,7 @@ void SummaryVisitor::convert(Json& json, Inertia& inertia) {
   if (!reads()) json = Json(std::vector<Json>(3));
   for (Index k = 0; k < 3; ++k) {
     Eigen::Vector3d row = inertia.value.row(k);
-    convert_components(json[static_cast<std::size_t>(k)], row, 3);
+    convert_components(json[std::size_t(k)], row, 3);
     inertia.value.row(k) = row;
   }
 }

@@ -126,7 +126,7 @@ class SummaryVisitor {
   void convert(Json& json, std::string& value) { convert_scalar(json, value, "string"); }
   template <std::integral Integer>
   void convert(Json& json, Integer& value) {
-    long number = static_cast<long>(value);
+    long number = long(value);
     convert_scalar(json, number, "integer");
     value = static_cast<Integer>(number);
   }

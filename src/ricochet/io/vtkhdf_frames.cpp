@@ -121,7 +121,7 @@ class VtkHdfFrames : public FrameArrangement {
     const auto write_time = [&] { write_entry(steps, path, "Values", frame.number, H5T_NATIVE_DOUBLE, &frame.time); };
     // The step is counted once all its data are in the file, even if the run is killed in between. The following writes
     // are in place: a chunk for further times is allocated before.
-    const bool needs_chunk = frame.number % static_cast<long>(steps_per_chunk) == 0;
+    const bool needs_chunk = frame.number % long(steps_per_chunk) == 0;
     if (needs_chunk) write_time();
     check_written(path, H5Fflush(file, H5F_SCOPE_LOCAL) >= 0, name(frame.number));
     if (!needs_chunk) write_time();
@@ -135,7 +135,7 @@ class VtkHdfFrames : public FrameArrangement {
   [[nodiscard]] FrameExtent count_extent(std::int64_t file) const override {
     H5O_info_t info{};
     if (H5Oget_info_by_name2(file, steps_name, &info, H5O_INFO_BASIC | H5O_INFO_HDR, H5P_DEFAULT) < 0) return {};
-    return {static_cast<std::int64_t>(info.addr), static_cast<std::int64_t>(info.hdr.space.total)};
+    return {std::int64_t(info.addr), std::int64_t(info.hdr.space.total)};
   }
   [[nodiscard]] std::string name(long frame) const override { return fmt::format("step {} of /VTKHDF", frame); }
   [[nodiscard]] bool keeps_times() const override { return true; }

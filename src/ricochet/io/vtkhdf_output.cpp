@@ -14,14 +14,14 @@ namespace {
 class VtkValues {
  public:
   explicit VtkValues(const Field& field) : field_(field) {
-    if (is_tensor()) reordered_.resize(static_cast<std::size_t>(components * field.rows));
+    if (is_tensor()) reordered_.resize(std::size_t(components * field.rows));
   }
   [[nodiscard]] const void* get() {
     if (!is_tensor()) return field_.values;
     const auto* from = static_cast<const double*>(field_.values);
     for (std::size_t row = 0; row < reordered_.size(); row += components) {
       for (std::size_t k = 0; k < components; ++k)
-        reordered_[row + k] = from[row + static_cast<std::size_t>(vtk_tensor_from_ours[k])];
+        reordered_[row + k] = from[row + std::size_t(vtk_tensor_from_ours[k])];
     }
     return reordered_.data();
   }
@@ -112,8 +112,7 @@ class VtkHdfOutput : public FrameOutput {
         vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(), file_type(shape, 1).vtk, corners),
         {{"Points", false, obstacles_.point_count(), 3}}};
     const std::vector<int>& numbers = obstacles_.numbers();
-    file.fixed.push_back(
-        {"/VTKHDF/CellData/obstacle", static_cast<Index>(numbers.size()), 0, {}, {numbers.begin(), numbers.end()}});
+    file.fixed.push_back({"/VTKHDF/CellData/obstacle", Index(numbers.size()), 0, {}, {numbers.begin(), numbers.end()}});
     return file;
   }
 

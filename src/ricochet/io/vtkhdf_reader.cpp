@@ -35,7 +35,7 @@ ResultFrames read_vtkhdf_frames(const Hdf5Reader& file) {
     for (const bool on_nodes : {true, false}) {
       ResultField field{name, on_nodes, 1};
       if (!file.has_dataset(vtkhdf_name(field))) continue;
-      field.components = static_cast<int>(std::max<Index>(file.extents(vtkhdf_name(field)).second, 1));
+      field.components = int(std::max<Index>(file.extents(vtkhdf_name(field)).second, 1));
       result.fields.push_back(field);
     }
   }
@@ -66,7 +66,7 @@ class RowsStorage : public ResultsStorage {
   void read_numbers(Index frame, const ResultField& field, Index rows, std::vector<Number>& values) {
     static_cast<void>(file());
     values_of_.at(vtkhdf_name(field)).read(frame * rows, rows, values);
-    if (field.components != static_cast<int>(vtk_tensor_from_ours.size())) return;
+    if (field.components != int(vtk_tensor_from_ours.size())) return;
     std::array<Number, vtk_tensor_from_ours.size()> tensor;
     for (auto row = values.begin(); row != values.end(); row += tensor.size()) {
       std::copy_n(row, tensor.size(), tensor.begin());
@@ -92,24 +92,24 @@ std::vector<ObstacleFrame> read_vtkhdf_obstacles(const std::string& directory, c
   const auto whole_numbers = [&file](const std::string& name, double limit) {
     std::vector<int> result;
     for (const std::int64_t value : file.integers(name, file.size(name))) {
-      if (value < 0 || static_cast<double>(value) >= limit) file.fail(name, "holds a number that is not a valid index");
-      result.push_back(static_cast<int>(value));
+      if (value < 0 || double(value) >= limit) file.fail(name, "holds a number that is not a valid index");
+      result.push_back(int(value));
     }
     return result;
   };
-  const auto points = static_cast<Index>(file.integer("/VTKHDF/NumberOfPoints"));
+  const auto points = Index(file.integer("/VTKHDF/NumberOfPoints"));
   ObstacleFrame frame;
-  frame.cells = whole_numbers("/VTKHDF/Connectivity", static_cast<double>(points));
+  frame.cells = whole_numbers("/VTKHDF/Connectivity", double(points));
   frame.obstacle = whole_numbers("/VTKHDF/CellData/obstacle", 1e6);
   const std::size_t cells = std::max<std::size_t>(frame.obstacle.size(), 1);
-  frame.corners = static_cast<int>(frame.cells.size() / cells);
+  frame.corners = int(frame.cells.size() / cells);
   if (frame.corners < 2 || frame.corners > 4 || frame.cells.size() % cells != 0)
     file.fail("/VTKHDF", "points, cells and obstacles are inconsistent: the file is damaged");
   const Hdf5Rows positions(file, "/VTKHDF/Points");
   std::vector<ObstacleFrame> result;
   for (const double time : times_of(file)) {
     frame.time = time;
-    positions.read(points * static_cast<Index>(result.size()), points, frame.positions);
+    positions.read(points * Index(result.size()), points, frame.positions);
     result.push_back(frame);
   }
   return result;

@@ -72,13 +72,13 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
 void XdmfFile::append(const std::string& grid) {
   change_detector_->require_unchanged();
   const std::string text = grid + tail;
-  reserve_space(path_, static_cast<std::int64_t>(text.size()));
+  reserve_space(path_, std::int64_t(text.size()));
   errno = 0;
   file_.seekp(checksums_.length());
   file_ << text << std::flush;
   if (!file_) throw_file_error(path_, "write", errno);
   if (!grid.empty()) checksums_.add(grid);
-  change_detector_->expect_size(checksums_.length() + static_cast<std::int64_t>(tail.size()));
+  change_detector_->expect_size(checksums_.length() + std::int64_t(tail.size()));
 }
 
 /// XDMF topology of the cells.

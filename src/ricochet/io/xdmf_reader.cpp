@@ -66,12 +66,12 @@ class Scanner {
     for (const double value : numbers(text)) {
       if (!(value >= 0.0 && value < limit) || value != std::trunc(value))
         fail(fmt::format("{} is not a valid index", value));
-      result.push_back(static_cast<int>(value));
+      result.push_back(int(value));
     }
     return result;
   }
   [[noreturn]] void fail(const std::string& problem) const {
-    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n');
     throw Error(ErrorKind::invalid_input, fmt::format("{}:{}: {}: the file is damaged", path_, line, problem));
   }
 
@@ -122,7 +122,7 @@ class GroupsStorage : public ResultsStorage {
   void read(Index frame, const ResultField& field, Index rows, Values values) override {
     const int columns = field.components > 1 ? field.components : 0;
     const auto read_table = [&](auto* numbers) {
-      file().table(groups_[static_cast<std::size_t>(frame)], field.name, rows, columns, *numbers);
+      file().table(groups_[std::size_t(frame)], field.name, rows, columns, *numbers);
     };
     std::visit(read_table, values);
   }
@@ -147,7 +147,7 @@ std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& directory, con
     file.expect("<Time Value=\"");
     frame.time = file.number(file.until("\""));
     file.expect("NodesPerElement=\"");
-    frame.corners = static_cast<int>(file.number(file.until("\"")));
+    frame.corners = int(file.number(file.until("\"")));
     const auto item = [&file] {
       file.expect("<DataItem");
       file.expect(">");
@@ -155,10 +155,10 @@ std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& directory, con
     };
     const std::string_view cells = item();
     frame.positions = file.numbers(item());
-    frame.cells = file.whole_numbers(cells, static_cast<double>(frame.positions.size() / 3));
+    frame.cells = file.whole_numbers(cells, double(frame.positions.size() / 3));
     frame.obstacle = file.whole_numbers(item(), 1e6);
     if (frame.corners < 2 || frame.corners > 4 || frame.positions.size() % 3 != 0 ||
-        frame.cells.size() != frame.obstacle.size() * static_cast<std::size_t>(frame.corners)) {
+        frame.cells.size() != frame.obstacle.size() * std::size_t(frame.corners)) {
       file.fail("points, cells and obstacles are inconsistent");
     }
     result.push_back(std::move(frame));

@@ -11,17 +11,16 @@ namespace {
 template <int d>
 class BlockJacobi final : public Preconditioner {
  public:
-  BlockJacobi(const Vector& blocks, const std::vector<char>& solved)
-      : inverse_(static_cast<std::size_t>(blocks.size() / (d * d))) {
+  BlockJacobi(const Vector& blocks, const std::vector<char>& solved) : inverse_(std::size_t(blocks.size() / (d * d))) {
     for (Index node = 0; node < nodes(); ++node) {
       Block block = Eigen::Map<const Block>(blocks.data() + node * d * d);
       for (int k = 0; k < d; ++k) {
-        if (solved[static_cast<std::size_t>(node * d + k)] != 0) continue;
+        if (solved[std::size_t(node * d + k)] != 0) continue;
         block.row(k).setZero();
         block.col(k).setZero();
         block(k, k) = 1.0;
       }
-      inverse_[static_cast<std::size_t>(node)] = block.inverse();
+      inverse_[std::size_t(node)] = block.inverse();
     }
   }
 
@@ -29,13 +28,13 @@ class BlockJacobi final : public Preconditioner {
     z.resize(r.size());
     parallel_ranges(nodes(), [&](Index begin, Index end) {
       for (Index node = begin; node < end; ++node)
-        z.segment<d>(node * d) = inverse_[static_cast<std::size_t>(node)] * r.segment<d>(node * d);
+        z.segment<d>(node * d) = inverse_[std::size_t(node)] * r.segment<d>(node * d);
     });
   }
 
  private:
   using Block = Eigen::Matrix<double, d, d>;
-  [[nodiscard]] Index nodes() const { return static_cast<Index>(inverse_.size()); }
+  [[nodiscard]] Index nodes() const { return Index(inverse_.size()); }
 
   std::vector<Block> inverse_;
 };

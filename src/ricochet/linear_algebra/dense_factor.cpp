@@ -32,15 +32,15 @@ constexpr double zero = 0.0;
 void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
                             const double* right, Index right_stride, double* result, Index result_stride) {
   prepare_blas();
-  const int m = static_cast<int>(left_columns), n = static_cast<int>(right_columns), k = static_cast<int>(rows);
-  const int a = static_cast<int>(left_stride), b = static_cast<int>(right_stride), c = static_cast<int>(result_stride);
+  const int m = int(left_columns), n = int(right_columns), k = int(rows);
+  const int a = int(left_stride), b = int(right_stride), c = int(result_stride);
   dgemm_("T", "N", &m, &n, &k, &one, left, &a, right, &b, &one, result, &c);
 }
 
 void multiply_transposed(const Matrix& matrix, const Vector& x, double* y) {
   prepare_blas();
-  const int rows = static_cast<int>(matrix.rows());
-  const int columns = static_cast<int>(matrix.cols());
+  const int rows = int(matrix.rows());
+  const int columns = int(matrix.cols());
   const int step = 1;
   if (rows == 0) std::fill_n(y, columns, 0.0);
   if (rows == 0 || columns == 0) return;
@@ -50,15 +50,15 @@ void multiply_transposed(const Matrix& matrix, const Vector& x, double* y) {
 void DenseLu::compute(const Matrix& matrix) {
   prepare_blas();
   factors_ = matrix;
-  const int size = static_cast<int>(matrix.rows());
-  permutation_.resize(static_cast<std::size_t>(size));
+  const int size = int(matrix.rows());
+  permutation_.resize(std::size_t(size));
   int info = 0;
   if (size > 0) dgetrf_(&size, &size, factors_.data(), &size, permutation_.data(), &info);
 }
 
 void DenseLu::solve(const Vector& right, Vector& x) const {
   x = right;
-  const int size = static_cast<int>(right.size());
+  const int size = int(right.size());
   const int single = 1;
   int info = 0;
   if (size > 0) dgetrs_("N", &size, &single, factors_.data(), &size, permutation_.data(), x.data(), &size, &info);
@@ -72,15 +72,15 @@ bool SingleLu::compute(const Matrix& matrix) {
   prepare_blas();
   const FlushDenormals flush;
   factors_ = matrix.cast<float>();
-  const int size = static_cast<int>(matrix.rows());
-  permutation_.resize(static_cast<std::size_t>(size));
+  const int size = int(matrix.rows());
+  permutation_.resize(std::size_t(size));
   int info = 0;
   if (size > 0) sgetrf_(&size, &size, factors_.data(), &size, permutation_.data(), &info);
   return info == 0 && factors_.diagonal().allFinite();
 }
 
 void SingleLu::solve(const Vector& right, Vector& x) const {
-  const int size = static_cast<int>(right.size());
+  const int size = int(right.size());
   const int single = 1;
   int info = 0;
   const FlushDenormals flush;
@@ -93,7 +93,7 @@ void SingleLu::solve(const Vector& right, Vector& x) const {
 bool DenseCholesky::compute(const Matrix& matrix) {
   prepare_blas();
   factor_ = matrix;
-  const int size = static_cast<int>(matrix.rows());
+  const int size = int(matrix.rows());
   int info = 0;
   if (size > 0) dpotrf_("L", &size, factor_.data(), &size, &info);
   return info == 0;
@@ -101,7 +101,7 @@ bool DenseCholesky::compute(const Matrix& matrix) {
 
 void DenseCholesky::solve(const Vector& right, Vector& x) const {
   x = right;
-  const int size = static_cast<int>(right.size());
+  const int size = int(right.size());
   const int single = 1;
   int info = 0;
   if (size > 0) dpotrs_("L", &size, &single, factor_.data(), &size, x.data(), &size, &info);
@@ -110,8 +110,8 @@ void DenseCholesky::solve(const Vector& right, Vector& x) const {
 void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y) {
   prepare_blas();
   y.resize(matrix.rows());
-  const int rows = static_cast<int>(matrix.rows());
-  const int columns = static_cast<int>(matrix.cols());
+  const int rows = int(matrix.rows());
+  const int columns = int(matrix.cols());
   const int stride = 1;
   if (rows > 0) dgemv_("N", &rows, &columns, &one, matrix.data(), &rows, x.data(), &stride, &zero, y.data(), &stride);
 }

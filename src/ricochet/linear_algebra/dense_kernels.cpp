@@ -10,14 +10,14 @@ namespace {
 
 RICOCHET_EACH_INSTRUCTION_SET(void, add_one, (Index size, const float* __restrict a, double f, double* __restrict y),
                               (size, a, f, y)) {
-  for (Index i = 0; i < size; ++i) y[i] += f * static_cast<double>(a[i]);
+  for (Index i = 0; i < size; ++i) y[i] += f * double(a[i]);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(void, add_two,
                               (Index size, const float* __restrict a, const float* __restrict b, double f, double g,
                                double* __restrict y),
                               (size, a, b, f, g, y)) {
-  for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i]);
+  for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * double(a[i])) + g * double(b[i]);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(void, add_three,
@@ -25,7 +25,7 @@ RICOCHET_EACH_INSTRUCTION_SET(void, add_three,
                                const float* __restrict c, double f, double g, double h, double* __restrict y),
                               (size, a, b, c, f, g, h, y)) {
   for (Index i = 0; i < size; ++i) {
-    y[i] = ((y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i])) + h * static_cast<double>(c[i]);
+    y[i] = ((y[i] + f * double(a[i])) + g * double(b[i])) + h * double(c[i]);
   }
 }
 

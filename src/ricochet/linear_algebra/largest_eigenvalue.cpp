@@ -18,7 +18,7 @@ constexpr double failure_probability = 1e-9;
 
 /// Returns a vector distributed uniformly on the unit sphere.
 Vector start_vector(Index size, const Ranks& ranks, int d) {
-  std::mt19937_64 generator(20110901 + static_cast<std::uint64_t>(ranks.rank()));
+  std::mt19937_64 generator(20110901 + std::uint64_t(ranks.rank()));
   std::normal_distribution<double> normal;
   Vector start(size);
   for (Index i = 0; i < size; ++i) start[i] = normal(generator);
@@ -37,11 +37,11 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
 EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(const Vector&, Vector&)>& multiply,
                                           double spread, const Ranks& ranks, int d) {
   EigenvalueBounds bounds;
-  const double all = ranks.sum(static_cast<double>(size - d * static_cast<Index>(ranks.not_owned().size())));
+  const double all = ranks.sum(double(size - d * Index(ranks.not_owned().size())));
   if (all == 0.0) return bounds;
   const double odds = 1.648 * std::sqrt(all) / failure_probability;
   const auto dot = [&](const Vector& one, const Vector& other) { return dot_product(one, other, ranks, d); };
-  const auto enough = static_cast<Index>(std::ceil(0.5 * (1.0 + std::log(odds) / std::sqrt(spread))));
+  const auto enough = Index(std::ceil(0.5 * (1.0 + std::log(odds) / std::sqrt(spread))));
   Vector previous = Vector::Zero(size);
   Vector current = start_vector(size, ranks, d);
   Vector next(size);
@@ -67,7 +67,7 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
   std::frexp(*std::ranges::max_element(diagonal), &exponent);
   for (double& entry : diagonal) entry = std::ldexp(entry, -exponent);
   for (double& entry : beside) entry = std::ldexp(entry, -exponent);
-  const auto count = static_cast<Index>(diagonal.size());
+  const auto count = Index(diagonal.size());
   const std::optional<Vector> values = tridiagonal_eigenvalues(Eigen::Map<const Vector>(diagonal.data(), count),
                                                                Eigen::Map<const Vector>(beside.data(), count - 1));
   if (!values) {

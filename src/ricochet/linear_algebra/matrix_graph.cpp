@@ -7,13 +7,13 @@ namespace ricochet {
 
 MatrixGraph::MatrixGraph(const SparseMatrix& matrix, int d) {
   const Index nodes = matrix.cols() / d;
-  begin_.reserve(static_cast<std::size_t>(nodes) + 1);
-  neighbour_.reserve(static_cast<std::size_t>(matrix.nonZeros() / (d * d) + nodes));
+  begin_.reserve(std::size_t(nodes) + 1);
+  neighbour_.reserve(std::size_t(matrix.nonZeros() / (d * d) + nodes));
   for (Index node = 0; node < nodes; ++node) {
     for (int a = 0; a < d; ++a) {
       int last = -1;
       for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
-        const int other = static_cast<int>(entry.row()) / d;
+        const int other = int(entry.row()) / d;
         if (other != last) neighbour_.push_back(other);
         last = other;
       }
@@ -21,7 +21,7 @@ MatrixGraph::MatrixGraph(const SparseMatrix& matrix, int d) {
     const auto first = neighbour_.begin() + begin_.back();
     std::sort(first, neighbour_.end());
     neighbour_.erase(std::unique(first, neighbour_.end()), neighbour_.end());
-    begin_.push_back(static_cast<Index>(neighbour_.size()));
+    begin_.push_back(Index(neighbour_.size()));
   }
 }
 
@@ -29,19 +29,17 @@ MatrixGraph::MatrixGraph(const NodePattern& pattern) : begin_(pattern.node.size(
   const auto each = [&](const auto& enter) {
     pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
-        const int other = pattern.column[static_cast<std::size_t>(first_block + k)];
+        const int other = pattern.column[std::size_t(first_block + k)];
         enter(node, other);
         if (k < group.two_sided) enter(other, node);
       }
     });
   };
-  each([&](int node, int) { ++begin_[static_cast<std::size_t>(node) + 1]; });
+  each([&](int node, int) { ++begin_[std::size_t(node) + 1]; });
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-  neighbour_.resize(static_cast<std::size_t>(begin_.back()));
+  neighbour_.resize(std::size_t(begin_.back()));
   std::vector<Index> next(begin_.begin(), begin_.end() - 1);
-  each([&](int node, int other) {
-    neighbour_[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = other;
-  });
+  each([&](int node, int other) { neighbour_[std::size_t(next[std::size_t(node)]++)] = other; });
   for (std::size_t i = 0; i + 1 < begin_.size(); ++i)
     std::sort(neighbour_.begin() + begin_[i], neighbour_.begin() + begin_[i + 1]);
 }

@@ -17,10 +17,10 @@ class MatrixGraph {
   MatrixGraph(const SparseMatrix& matrix, int d);
   explicit MatrixGraph(const NodePattern& pattern);
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(begin_.size()) - 1; }
+  [[nodiscard]] Index size() const { return Index(begin_.size()) - 1; }
   /// Neighbours of a node, ascending, including the node itself.
   [[nodiscard]] std::span<const int> neighbours(Index node) const {
-    const auto at = static_cast<std::size_t>(node);
+    const auto at = std::size_t(node);
     return {neighbour_.data() + begin_[at], neighbour_.data() + begin_[at + 1]};
   }
 

@@ -22,7 +22,7 @@ using NodeRows = NodeRowsOf<double>;
 /// Returns the rows of a part; `values` holds the blocks of all parts.
 template <class Number>
 [[nodiscard]] NodeRowsOf<Number> part_rows(const NodePattern& pattern, Index part, const Number* values) {
-  const auto at = static_cast<std::size_t>(part);
+  const auto at = std::size_t(part);
   return {pattern.part_begins[at],
           pattern.part_begins[at + 1],
           {pattern.groups.data() + pattern.part_groups[at], pattern.groups.data() + pattern.part_groups[at + 1]},

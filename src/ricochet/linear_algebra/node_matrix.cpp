@@ -20,7 +20,7 @@ bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
   const int* inner = matrix.innerIndexPtr();
   const double* values = matrix.valuePtr();
   for (Index column = 0; column < matrix.cols(); ++column) {
-    const int component = static_cast<int>(column % d);
+    const int component = int(column % d);
     const Index first = column - component;
     if (outer[column + 1] - outer[column] != outer[first + 1] - outer[first]) return false;
     for (int k = outer[column], of_first = outer[first]; k < outer[column + 1]; ++k, ++of_first) {
@@ -48,7 +48,7 @@ NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d) : dimension_(d) {
 void NodeMatrix::read_values(const SparseMatrix& matrix) {
   const int d = dimension_;
   // The kernels read one number beyond a block.
-  values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
+  values_.assign(pattern_.column.size() * std::size_t(stride_) + 1, 0.0);
   const int* const columns = pattern_.column.data();
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     pattern_.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
@@ -60,7 +60,7 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
         const int* at = end;
         // Columns equal rows, since the matrix is symmetric.
         for (SparseMatrix::InnerIterator entry(matrix, Index{node} * d + a); entry; ++entry) {
-          const int other = static_cast<int>(entry.row()) / d;
+          const int other = int(entry.row()) / d;
           if (other != last_other) {
             at = std::lower_bound(begin, middle, other);
             if (at == middle || *at != other) at = std::lower_bound(middle, end, other);
@@ -69,7 +69,7 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
           }
           if (at == end) continue;
           const Index in_block = is_scalar() ? 0 : (entry.row() - Index{other} * d) * d + a;
-          values_[static_cast<std::size_t>((at - columns) * stride_ + in_block)] = entry.value();
+          values_[std::size_t((at - columns) * stride_ + in_block)] = entry.value();
         }
       }
     });
@@ -85,20 +85,20 @@ NodeMatrix::NodeMatrix(const std::vector<Term>& terms) : dimension_(terms.front(
     stride_ = std::max(stride_, term.matrix->stride_);
   }
   pattern_ = joined_pattern(patterns);
-  values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
+  values_.assign(pattern_.column.size() * std::size_t(stride_) + 1, 0.0);
   const auto add = [&](const Term& term, const PatternRow& row, Index first_block, Index count) {
     // Columns ascend in both, and those of a term are a subset of those of the sum.
     Index block = first_block;
     for (Index own = row.first_block; own < row.first_block + count; ++own, ++block) {
-      const int column = term.matrix->pattern_.column[static_cast<std::size_t>(own)];
-      while (pattern_.column[static_cast<std::size_t>(block)] != column) ++block;
+      const int column = term.matrix->pattern_.column[std::size_t(own)];
+      while (pattern_.column[std::size_t(block)] != column) ++block;
       term.matrix->add_block(own, term.factor, stride_, values_.data() + block * stride_);
     }
   };
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     pattern_.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
       for (std::size_t i = 0; i < terms.size(); ++i) {
-        PatternRow row = rows[i][static_cast<std::size_t>(node)];
+        PatternRow row = rows[i][std::size_t(node)];
         add(terms[i], row, first_block, row.two_sided);
         row.first_block += row.two_sided;
         add(terms[i], row, first_block + group.two_sided, row.one_sided);
@@ -134,12 +134,11 @@ double NodeMatrix::quadratic_form(const Vector& x) const {
   std::array<double, most_node_parts> sums{};
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      sums[static_cast<std::size_t>(part)] =
-          form_rows(part_rows(pattern_, part, values_.data()), dimension_, is_scalar(), x.data());
+      sums[std::size_t(part)] = form_rows(part_rows(pattern_, part, values_.data()), dimension_, is_scalar(), x.data());
     }
   });
   double total = 0.0;
-  for (Index part = 0; part < pattern_.parts(); ++part) total += sums[static_cast<std::size_t>(part)];
+  for (Index part = 0; part < pattern_.parts(); ++part) total += sums[std::size_t(part)];
   return total;
 }
 
@@ -148,7 +147,7 @@ template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
   pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
     for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k)
-      enter(node, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);
+      enter(node, pattern_.column[std::size_t(k)], values_.data() + k * stride_);
   });
 }
 
@@ -159,7 +158,7 @@ double NodeMatrix::absolute_quadratic_form(const Vector& x) const {
     for (Index k = 0; k < group.blocks_per_row(); ++k) {
       const double* const block = values_.data() + (first_block + k) * stride_;
       const Index row = Index{node} * d;
-      const Index column = Index{pattern_.column[static_cast<std::size_t>(first_block + k)]} * d;
+      const Index column = Index{pattern_.column[std::size_t(first_block + k)]} * d;
       double own = 0.0;
       for (int a = 0; a < d; ++a) {
         for (int b = 0; b < d; ++b) {
@@ -189,7 +188,7 @@ Vector NodeMatrix::diagonal_blocks() const {
   Vector result = Vector::Zero(size() * d);
   pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
     for (Index k = first_block + group.two_sided; k < first_block + group.blocks_per_row(); ++k) {
-      if (pattern_.column[static_cast<std::size_t>(k)] == node)
+      if (pattern_.column[std::size_t(k)] == node)
         add_block(k, 1.0, size_of_block, result.data() + node * size_of_block);
     }
   });
@@ -217,8 +216,7 @@ namespace {
 /// Position of each node in `selected`; −1 if it is not in it.
 std::vector<int> positions_of(const std::vector<Index>& selected, std::size_t nodes) {
   std::vector<int> position(nodes, -1);
-  for (std::size_t i = 0; i < selected.size(); ++i)
-    position[static_cast<std::size_t>(selected[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < selected.size(); ++i) position[std::size_t(selected[i])] = int(i);
   return position;
 }
 
@@ -226,15 +224,14 @@ std::vector<int> positions_of(const std::vector<Index>& selected, std::size_t no
 
 SparseMatrix NodeMatrix::principal(const std::vector<Index>& selected) const {
   const std::vector<int> position = positions_of(selected, pattern_.node.size());
-  const auto count = static_cast<Index>(selected.size());
+  const auto count = Index(selected.size());
   return extract(position, count, position, count);
 }
 
 SparseMatrix NodeMatrix::columns(const std::vector<Index>& selected) const {
   std::vector<int> all(pattern_.node.size());
   std::iota(all.begin(), all.end(), 0);
-  return extract(all, static_cast<Index>(all.size()), positions_of(selected, all.size()),
-                 static_cast<Index>(selected.size()));
+  return extract(all, Index(all.size()), positions_of(selected, all.size()), Index(selected.size()));
 }
 
 /// Extracts block rows and columns, numbered by `row_of` and `column_of` per node; −1 omits a node.
@@ -248,28 +245,27 @@ SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, con
   };
   const auto each_block = [&](const auto& enter) {
     const auto enter_selected = [&](int row, int column, Index block, bool transposed) {
-      if (row_of[static_cast<std::size_t>(row)] >= 0 && column_of[static_cast<std::size_t>(column)] >= 0)
-        enter(column_of[static_cast<std::size_t>(column)],
-              BlockPosition{row_of[static_cast<std::size_t>(row)], block, transposed});
+      if (row_of[std::size_t(row)] >= 0 && column_of[std::size_t(column)] >= 0)
+        enter(column_of[std::size_t(column)], BlockPosition{row_of[std::size_t(row)], block, transposed});
     };
     // A block stored in a row belongs, transposed, to its column; a two-sided block also belongs to the other column.
     pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
-      if (row_of[static_cast<std::size_t>(node)] < 0 && column_of[static_cast<std::size_t>(node)] < 0) return;
+      if (row_of[std::size_t(node)] < 0 && column_of[std::size_t(node)] < 0) return;
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
-        const int other = pattern_.column[static_cast<std::size_t>(first_block + k)];
+        const int other = pattern_.column[std::size_t(first_block + k)];
         enter_selected(other, node, first_block + k, true);
         if (k < group.two_sided) enter_selected(node, other, first_block + k, false);
       }
     });
   };
   std::vector<Index> begins(static_cast<std::size_t>(columns) + 1, 0);  // of the blocks of each column
-  each_block([&](int column, const BlockPosition&) { ++begins[static_cast<std::size_t>(column) + 1]; });
+  each_block([&](int column, const BlockPosition&) { ++begins[std::size_t(column) + 1]; });
   for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
   std::vector<BlockPosition> positions(static_cast<std::size_t>(begins.back()));
   {
     std::vector<Index> next(begins.begin(), begins.end() - 1);
     each_block([&](int column, const BlockPosition& position) {
-      positions[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = position;
+      positions[std::size_t(next[std::size_t(column)]++)] = position;
     });
   }
   const Index per_block = is_scalar() ? 1 : d;  // entries of a block in one column of the matrix
@@ -277,19 +273,19 @@ SparseMatrix NodeMatrix::extract(const std::vector<int>& row_of, Index rows, con
   const Index entries = begins.back() * d * per_block;
   result.resizeNonZeros(entries);
   int* outer = result.outerIndexPtr();
-  outer[columns * d] = static_cast<int>(entries);
+  outer[columns * d] = int(entries);
   parallel_ranges(columns, [&](Index first, Index last) {
     for (Index column = first; column < last; ++column) {
-      const auto begin = positions.begin() + begins[static_cast<std::size_t>(column)];
-      const auto end = positions.begin() + begins[static_cast<std::size_t>(column) + 1];
+      const auto begin = positions.begin() + begins[std::size_t(column)];
+      const auto end = positions.begin() + begins[std::size_t(column) + 1];
       std::sort(begin, end, [](const BlockPosition& a, const BlockPosition& b) { return a.row < b.row; });
       for (int a = 0; a < d; ++a) {
-        Index at = (begins[static_cast<std::size_t>(column)] * d + a * (end - begin)) * per_block;
-        outer[column * d + a] = static_cast<int>(at);
+        Index at = (begins[std::size_t(column)] * d + a * (end - begin)) * per_block;
+        outer[column * d + a] = int(at);
         for (auto position = begin; position != end; ++position) {
           const double* block = values_.data() + position->block * stride_;
           for (Index c = 0; c < per_block; ++c, ++at) {
-            result.innerIndexPtr()[at] = static_cast<int>(position->row * d + (is_scalar() ? a : c));
+            result.innerIndexPtr()[at] = int(position->row * d + (is_scalar() ? a : c));
             result.valuePtr()[at] = block[is_scalar() ? 0 : position->transposed ? c * d + a : a * d + c];
           }
         }

@@ -34,7 +34,7 @@ class NodeMatrix {
   /// Computes Σ factor · matrix in the order of the terms, of which there is at least one, all with the same nodes.
   explicit NodeMatrix(const std::vector<Term>& terms);
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(pattern_.node.size()) * dimension_; }
+  [[nodiscard]] Index size() const { return Index(pattern_.node.size()) * dimension_; }
   [[nodiscard]] int dimension() const { return dimension_; }
   /// Returns whether the matrix is m ⊗ I.
   [[nodiscard]] bool is_scalar() const { return stride_ == 1; }

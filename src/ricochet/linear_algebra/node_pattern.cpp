@@ -24,7 +24,7 @@ class RowOfMatrix {
       std::size_t matched = 0;
       int last = -1;
       for (SparseMatrix::InnerIterator entry(matrix_, node * d_ + a); entry; ++entry) {
-        const int other = static_cast<int>(entry.row()) / d_;
+        const int other = int(entry.row()) / d_;
         if (other == last) continue;
         last = other;
         if (a > 0 && matched < nodes_.size() && nodes_[matched] == other) {
@@ -65,7 +65,7 @@ class RowOfPatterns {
     two_sided_.clear();
     one_sided_.clear();
     for (std::size_t i = 0; i < patterns_.size(); ++i) {
-      const PatternRow row = rows_[i][static_cast<std::size_t>(node)];
+      const PatternRow row = rows_[i][std::size_t(node)];
       const auto first = patterns_[i]->column.begin() + row.first_block;
       join(first, first + row.two_sided, two_sided_);
       join(first + row.two_sided, first + row.two_sided + row.one_sided, one_sided_);
@@ -100,13 +100,13 @@ Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
   for (std::size_t part = 0; part + 1 < pattern.part_begins.size(); ++part) {
     const Index begin = pattern.part_begins[part], end = pattern.part_begins[part + 1];
     for (Index row = begin; row < end; ++row) {
-      const Counts own = counts[static_cast<std::size_t>(pattern.node[static_cast<std::size_t>(row)])];
+      const Counts own = counts[std::size_t(pattern.node[std::size_t(row)])];
       const bool same = row > begin && own == Counts{pattern.groups.back().two_sided, pattern.groups.back().one_sided};
       if (!same) pattern.groups.push_back({row, 0, blocks, own.two_sided, own.one_sided});
       ++pattern.groups.back().rows;
       blocks += own.two_sided + own.one_sided;
     }
-    pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
+    pattern.part_groups.push_back(Index(pattern.groups.size()));
   }
   return blocks;
 }
@@ -117,11 +117,11 @@ NodePattern pattern_of_rows(Index node_count, const Reader& first_reader) {
   NodePattern pattern;
   pattern.part_begins = node_parts(node_count);
   const std::vector<Index>& begins = pattern.part_begins;
-  const auto nodes = static_cast<std::size_t>(begins.back());
+  const auto nodes = std::size_t(begins.back());
   const auto each_part = [&](const auto& enter) {
     parallel_ranges(pattern.parts(), [&](Index first, Index last) {
       Reader row = first_reader;
-      for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) enter(part, row);
+      for (auto part = std::size_t(first); part < std::size_t(last); ++part) enter(part, row);
     });
   };
   std::vector<Counts> counts(nodes);
@@ -131,20 +131,18 @@ NodePattern pattern_of_rows(Index node_count, const Reader& first_reader) {
     const Index begin = begins[part], end = begins[part + 1];
     for (Index node = begin; node < end; ++node) {
       row.read(node, begin, end);
-      counts[static_cast<std::size_t>(node)] = {static_cast<Index>(row.two_sided().size()),
-                                                static_cast<Index>(row.one_sided().size())};
+      counts[std::size_t(node)] = {Index(row.two_sided().size()), Index(row.one_sided().size())};
     }
-    std::stable_sort(pattern.node.begin() + begin, pattern.node.begin() + end, [&](int a, int b) {
-      return counts[static_cast<std::size_t>(a)] < counts[static_cast<std::size_t>(b)];
-    });
+    std::stable_sort(pattern.node.begin() + begin, pattern.node.begin() + end,
+                     [&](int a, int b) { return counts[std::size_t(a)] < counts[std::size_t(b)]; });
   });
-  pattern.column.resize(static_cast<std::size_t>(group_rows(counts, pattern)));
+  pattern.column.resize(std::size_t(group_rows(counts, pattern)));
   each_part([&](std::size_t part, Reader& row) {
     for (Index g = pattern.part_groups[part]; g < pattern.part_groups[part + 1]; ++g) {
-      const RowGroup& group = pattern.groups[static_cast<std::size_t>(g)];
+      const RowGroup& group = pattern.groups[std::size_t(g)];
       auto to = pattern.column.begin() + group.first_block;
       for (Index r = group.first_row; r < group.end_row(); ++r) {
-        row.read(pattern.node[static_cast<std::size_t>(r)], begins[part], begins[part + 1]);
+        row.read(pattern.node[std::size_t(r)], begins[part], begins[part + 1]);
         to = std::copy(row.two_sided().begin(), row.two_sided().end(), to);
         to = std::copy(row.one_sided().begin(), row.one_sided().end(), to);
       }
@@ -162,7 +160,7 @@ std::size_t NodePattern::bytes() const {
 PatternRows NodePattern::rows() const {
   PatternRows result(node.size());
   visit_rows(0, parts(), [&](int of_row, Index first_block, const RowGroup& group) {
-    result[static_cast<std::size_t>(of_row)] = {first_block, group.two_sided, group.one_sided};
+    result[std::size_t(of_row)] = {first_block, group.two_sided, group.one_sided};
   });
   return result;
 }
@@ -174,7 +172,7 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
 NodePattern joined_pattern(const std::vector<const NodePattern*>& patterns) {
   std::vector<PatternRows> rows;
   for (const NodePattern* pattern : patterns) rows.push_back(pattern->rows());
-  return pattern_of_rows(static_cast<Index>(patterns.front()->node.size()), RowOfPatterns(patterns, rows));
+  return pattern_of_rows(Index(patterns.front()->node.size()), RowOfPatterns(patterns, rows));
 }
 
 }  // namespace ricochet

@@ -35,18 +35,17 @@ struct NodePattern {
   std::vector<RowGroup> groups;       ///< part after part
   std::vector<Index> part_groups{0};  ///< first group of each part, followed by the number of groups
 
-  [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
+  [[nodiscard]] Index parts() const { return Index(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] PatternRows rows() const;
   /// Calls enter(node of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
   template <class Enter>
   void visit_rows(Index first_part, Index end_part, const Enter& enter) const {
-    for (Index g = part_groups[static_cast<std::size_t>(first_part)];
-         g < part_groups[static_cast<std::size_t>(end_part)]; ++g) {
-      const RowGroup& group = groups[static_cast<std::size_t>(g)];
+    for (Index g = part_groups[std::size_t(first_part)]; g < part_groups[std::size_t(end_part)]; ++g) {
+      const RowGroup& group = groups[std::size_t(g)];
       Index block = group.first_block;
       for (Index row = group.first_row; row < group.end_row(); ++row, block += group.blocks_per_row())
-        enter(node[static_cast<std::size_t>(row)], block, group);
+        enter(node[std::size_t(row)], block, group);
     }
   }
 };

@@ -44,31 +44,30 @@ void NumericFactorization::plan_panels() {
     max_rows_ = std::max<Index>(max_rows_, node.columns + node.below);
     const Index head = node.columns % 8, blocks = node.columns / 8;
     const Index count = std::max<Index>(1, (8 * blocks + max_panel_columns - 1) / max_panel_columns);
-    first_panel_.push_back(static_cast<int>(panels_.size()));
+    first_panel_.push_back(int(panels_.size()));
     for (Index i = 0; i < count; ++i) {
       const Index begin = i == 0 ? 0 : head + 8 * (blocks * i / count), end = head + 8 * (blocks * (i + 1) / count);
-      panels_.push_back({static_cast<int>(s), static_cast<int>(begin), static_cast<int>(end)});
+      panels_.push_back({int(s), int(begin), int(end)});
     }
   }
-  first_panel_.push_back(static_cast<int>(panels_.size()));
+  first_panel_.push_back(int(panels_.size()));
 }
 
 void NumericFactorization::plan_updates() {
   std::vector<int> panel_of(static_cast<std::size_t>(factor_.size()));
   for (std::size_t p = 0; p < panels_.size(); ++p) {
     const int first = factor_.supernode(panels_[p].supernode).first;
-    std::fill(panel_of.begin() + first + panels_[p].begin, panel_of.begin() + first + panels_[p].end,
-              static_cast<int>(p));
+    std::fill(panel_of.begin() + first + panels_[p].begin, panel_of.begin() + first + panels_[p].end, int(p));
   }
   const auto visit = [&](const auto& enter) {
     for (Index s = 0; s < factor_.supernode_count(); ++s) {
       const SupernodalFactor::Supernode& node = factor_.supernode(s);
       const int size = node.columns + node.below;
-      const auto panel = [&](int row) { return panel_of[static_cast<std::size_t>(factor_.row(node, row))]; };
+      const auto panel = [&](int row) { return panel_of[std::size_t(factor_.row(node, row))]; };
       for (int begin = node.columns; begin < size;) {
         int end = begin + 1;
         while (end < size && panel(end) == panel(begin)) ++end;
-        enter(static_cast<std::size_t>(panel(begin)), PanelUpdate{static_cast<int>(s), begin, end});
+        enter(std::size_t(panel(begin)), PanelUpdate{int(s), begin, end});
         begin = end;
       }
     }
@@ -76,18 +75,16 @@ void NumericFactorization::plan_updates() {
   first_update_.assign(panels_.size() + 1, 0);
   visit([&](std::size_t panel, const PanelUpdate&) { ++first_update_[panel + 1]; });
   for (std::size_t p = 0; p < panels_.size(); ++p) first_update_[p + 1] += first_update_[p];
-  updates_.resize(static_cast<std::size_t>(first_update_.back()));
+  updates_.resize(std::size_t(first_update_.back()));
   std::vector<Index> next(first_update_.begin(), first_update_.end() - 1);
-  visit([&](std::size_t panel, const PanelUpdate& update) {
-    updates_[static_cast<std::size_t>(next[panel]++)] = update;
-  });
+  visit([&](std::size_t panel, const PanelUpdate& update) { updates_[std::size_t(next[panel]++)] = update; });
 }
 
 void NumericFactorization::plan_tasks() {
-  const auto count = static_cast<std::size_t>(factor_.supernode_count());
+  const auto count = std::size_t(factor_.supernode_count());
   std::vector<double> per_supernode(count);
   for (std::size_t s = 0; s < count; ++s) {
-    const SupernodalFactor::Supernode& node = factor_.supernode(static_cast<Index>(s));
+    const SupernodalFactor::Supernode& node = factor_.supernode(Index(s));
     per_supernode[s] = operations(node, 0, node.columns);
     all_operations_ += per_supernode[s];
   }
@@ -96,11 +93,11 @@ void NumericFactorization::plan_tasks() {
       factor_.subtrees(per_supernode, divided ? all_operations_ / parts_per_factorization : all_operations_);
   for (std::size_t s = 0; s < count; ++s) {
     if (root[s] < 0) {
-      top_.push_back(static_cast<int>(s));
+      top_.push_back(int(s));
     } else if (s == 0 || root[s] != root[s - 1]) {
-      subtrees_.push_back({static_cast<int>(s), static_cast<int>(s) + 1});
+      subtrees_.push_back({int(s), int(s) + 1});
     } else {
-      subtrees_.back().end = static_cast<int>(s) + 1;
+      subtrees_.back().end = int(s) + 1;
     }
   }
   failed_.resize(subtrees_.size());
@@ -108,7 +105,7 @@ void NumericFactorization::plan_tasks() {
 
 /// Provides one workspace for the calling thread besides those of the threads that work on parts of its panel.
 void NumericFactorization::prepare_workspaces() {
-  while (workspaces_.size() < static_cast<std::size_t>(thread_count()) + 1) {
+  while (workspaces_.size() < std::size_t(thread_count()) + 1) {
     workspaces_.push_back(std::make_unique<PanelWorkspace>());
     workspaces_.back()->allocate(factor_.size(), max_rows_);
   }
@@ -137,9 +134,9 @@ void NumericFactorization::has_factorized(const FactorPanel& panel) {
 /// Factorizes one panel after the other; with `divided`, on all threads.
 Index NumericFactorization::factorize(int supernode, const LowerColumns& matrix, double scale,
                                       PanelWorkspace& workspace, bool divided) {
-  const auto s = static_cast<std::size_t>(supernode);
+  const auto s = std::size_t(supernode);
   for (int number = first_panel_[s]; number < first_panel_[s + 1]; ++number) {
-    const auto p = static_cast<std::size_t>(number);
+    const auto p = std::size_t(number);
     PanelFactorization panel(factor_, panels_[p], workspace);
     const Index rows = panel.rows();
     const auto assemble = [&](Index begin, Index end, PanelWorkspace& own) {
@@ -180,8 +177,7 @@ Index NumericFactorization::run(const LowerColumns& matrix, double scale) {
   prepare_workspaces();
   done_ = 0.0;
   since_logged_.restart();
-  parallel_items(static_cast<Index>(subtrees_.size()),
-                 [&](Index number) { factorize_subtree(static_cast<std::size_t>(number), matrix, scale); });
+  parallel_items(Index(subtrees_.size()), [&](Index number) { factorize_subtree(std::size_t(number), matrix, scale); });
   Index first_failed = factor_.size();
   for (const Index column : failed_) first_failed = std::min(first_failed, column);
   auto workspace = acquire_workspace();

@@ -69,10 +69,9 @@ class Remainder {
 
 void PanelWorkspace::allocate(Index size, Index max_rows) {
   // Not initialized here: a thread that processes parts of other threads' panels never touches these pages.
-  values = std::make_unique_for_overwrite<double[]>(
-      static_cast<std::size_t>((max_rows + 2 * margin) * (max_panel_columns + 8)));
-  local.resize(static_cast<std::size_t>(size));
-  relative_rows.resize(static_cast<std::size_t>(max_rows + 2 * margin));
+  values = std::make_unique_for_overwrite<double[]>(std::size_t((max_rows + 2 * margin) * (max_panel_columns + 8)));
+  local.resize(std::size_t(size));
+  relative_rows.resize(std::size_t(max_rows + 2 * margin));
 }
 
 PanelFactorization::PanelFactorization(SupernodalFactor& factor, const FactorPanel& panel, PanelWorkspace& workspace)
@@ -88,7 +87,7 @@ PanelFactorization::PanelFactorization(SupernodalFactor& factor, const FactorPan
       end_block_((panel_.end - layout_.head) / 8),
       values_(workspace.values.get()),
       local_(workspace.local.data()) {
-  for (Index i = 0; i < rows_; ++i) local_[factor_.row(node_, panel_.begin + i)] = static_cast<int>(i);
+  for (Index i = 0; i < rows_; ++i) local_[factor_.row(node_, panel_.begin + i)] = int(i);
 }
 
 void PanelFactorization::assemble(const LowerColumns& matrix, double scale, const PanelUpdate* first,
@@ -97,7 +96,7 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
   for (Index j = 0; j < columns; ++j) {
     double* const column = values_ + j * stride_;
     std::fill(column + begin, column + (end == rows_ ? stride_ : end), 0.0);
-    const int at = node_.first + static_cast<int>(panel_.begin + j);
+    const int at = node_.first + int(panel_.begin + j);
     for (int k = matrix.begin[at]; k < matrix.begin[at + 1]; ++k) {
       const int row = local_[matrix.rows[k]];
       // Rows that are not in this panel still have indices of an earlier one.
@@ -110,8 +109,8 @@ void PanelFactorization::assemble(const LowerColumns& matrix, double scale, cons
   std::array<int, max_panel_columns + 8 + 2 * margin> column_storage;
   int* const relative_columns = column_storage.data() + margin;
   if (panel_.begin > 0) {
-    for (Index i = begin; i < end; ++i) relative_rows[i - begin] = static_cast<int>(i);
-    for (Index j = 0; j < columns; ++j) relative_columns[j] = static_cast<int>(j);
+    for (Index i = begin; i < end; ++i) relative_rows[i - begin] = int(i);
+    for (Index j = 0; j < columns; ++j) relative_columns[j] = int(j);
     subtract({layout_, base_, first_block_}, panel_.begin + begin, panel_.begin + end, relative_rows, panel_.begin,
              panel_.end, relative_columns);
   }

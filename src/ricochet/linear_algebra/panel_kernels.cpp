@@ -62,7 +62,7 @@ RICOCHET_PART_OF_CALLER void multiply_one_by_one(Index count, PanelRows a, const
 
 template <int C>
 RICOCHET_PART_OF_CALLER void solve_columns(const double* c, const double* inverse, double* x) {
-  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  constexpr int lanes = int(triangle_lanes(C));
   for (int i = 0; i < C; ++i) {
     Pack<8> sum = load<8>(c) * inverse[i];
     for (int j = 1; j <= i; ++j) sum += load<8>(c + 8 * j) * inverse[lanes * j + i];
@@ -139,7 +139,7 @@ int invert_factor(Index size, const double* triangle, double* inverse) {
       } else if (value > 0.0) {
         factor[j][j] = std::sqrt(value);
       } else {
-        return static_cast<int>(j);
+        return int(j);
       }
     }
   }

@@ -34,14 +34,14 @@ bool PrincipalFactor::set_base(const Matrix& w, const std::vector<Index>& indice
   added_.clear();
   removed_.clear();
   common_a_.resize(indices.size());
-  for (std::size_t k = 0; k < indices.size(); ++k) common_a_[k] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < indices.size(); ++k) common_a_[k] = Index(k);
   common_b_ = common_a_;
   if (indices.empty()) return true;
-  const auto count = static_cast<Index>(indices.size());
+  const auto count = Index(indices.size());
   Matrix block(count, count);
   for (Index j = 0; j < count; ++j) {
-    const double* column = w.data() + indices[static_cast<std::size_t>(j)] * w.rows();
-    for (Index i = 0; i < count; ++i) block(i, j) = column[indices[static_cast<std::size_t>(i)]];
+    const double* column = w.data() + indices[std::size_t(j)] * w.rows();
+    for (Index i = 0; i < count; ++i) block(i, j) = column[indices[std::size_t(i)]];
   }
   // Scaling makes the square roots, and hence the bits, independent of the unit system.
   const double largest = block.diagonal().maxCoeff();
@@ -77,30 +77,30 @@ bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices)
   std::size_t a = 0, b = 0;
   while (a < indices.size() || b < base_.size()) {
     if (b == base_.size() || (a < indices.size() && indices[a] < base_[b])) {
-      added_.push_back(static_cast<Index>(a++));
+      added_.push_back(Index(a++));
     } else if (a == indices.size() || base_[b] < indices[a]) {
-      removed_.push_back(static_cast<Index>(b++));
+      removed_.push_back(Index(b++));
     } else {
-      common_a_.push_back(static_cast<Index>(a++));
-      common_b_.push_back(static_cast<Index>(b++));
+      common_a_.push_back(Index(a++));
+      common_b_.push_back(Index(b++));
     }
   }
-  const auto size = static_cast<Index>(base_.size());
-  const auto arrivals = static_cast<Index>(added_.size());
-  const auto changes = arrivals + static_cast<Index>(removed_.size());
+  const auto size = Index(base_.size());
+  const auto arrivals = Index(added_.size());
+  const auto changes = arrivals + Index(removed_.size());
   if (changes == 0) return true;
   border_.setZero(size, changes);
   Matrix schur = Matrix::Zero(changes, changes);
   for (Index k = 0; k < arrivals; ++k) {
-    const Index index = indices[static_cast<std::size_t>(added_[static_cast<std::size_t>(k)])];
+    const Index index = indices[std::size_t(added_[std::size_t(k)])];
     const double* column = w.data() + index * w.rows();
-    for (Index i = 0; i < size; ++i) border_(i, k) = scale_ * column[base_[static_cast<std::size_t>(i)]];
+    for (Index i = 0; i < size; ++i) border_(i, k) = scale_ * column[base_[std::size_t(i)]];
     for (Index l = 0; l < arrivals; ++l) {
-      const Index other = indices[static_cast<std::size_t>(added_[static_cast<std::size_t>(l)])];
+      const Index other = indices[std::size_t(added_[std::size_t(l)])];
       schur(l, k) = scale_ * column[other];
     }
   }
-  for (Index k = arrivals; k < changes; ++k) border_(removed_[static_cast<std::size_t>(k - arrivals)], k) = 1.0;
+  for (Index k = arrivals; k < changes; ++k) border_(removed_[std::size_t(k - arrivals)], k) = 1.0;
   solved_ = factor_.solve(border_);
   schur.noalias() -= border_.transpose() * solved_;
   if (!schur.allFinite()) return false;
@@ -109,20 +109,20 @@ bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices)
 }
 
 void PrincipalFactor::solve(const Vector& right, Vector& x) const {
-  base_right_.setZero(static_cast<Index>(base_.size()));
+  base_right_.setZero(Index(base_.size()));
   for (std::size_t k = 0; k < common_a_.size(); ++k) base_right_[common_b_[k]] = scale_ * right[common_a_[k]];
   if (base_right_.size() > 0) factor_.solveInPlace(base_right_);
-  const auto arrivals = static_cast<Index>(added_.size());
-  const auto changes = arrivals + static_cast<Index>(removed_.size());
+  const auto arrivals = Index(added_.size());
+  const auto changes = arrivals + Index(removed_.size());
   x.resize(right.size());
   if (changes > 0) {
     // (S)(x_D, λ) = (b_D, 0) − (W_DB; E_Rᵀ) W_BB⁻¹ b_B.
     border_right_.noalias() = border_.transpose() * base_right_;
     border_right_ = -border_right_;  // a product with a sign would be evaluated into a new vector
-    for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[added_[static_cast<std::size_t>(k)]];
+    for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[added_[std::size_t(k)]];
     border_solution_ = schur_.solve(border_right_);
     base_right_.noalias() -= solved_ * border_solution_;
-    for (Index k = 0; k < arrivals; ++k) x[added_[static_cast<std::size_t>(k)]] = border_solution_[k];
+    for (Index k = 0; k < arrivals; ++k) x[added_[std::size_t(k)]] = border_solution_[k];
   }
   for (std::size_t k = 0; k < common_a_.size(); ++k) x[common_a_[k]] = base_right_[common_b_[k]];
 }

@@ -77,7 +77,7 @@ RICOCHET_PART_OF_CALLER double single_dot(const float* x, const float* y, Index 
     }
     for (; i < end; ++i) sums[0][0] += x[i] * y[i];
     const Floats both = sums[0] + sums[1];
-    total += static_cast<double>((both[0] + both[1]) + (both[2] + both[3]));
+    total += double((both[0] + both[1]) + (both[2] + both[3]));
   }
   return total;
 }

@@ -23,8 +23,8 @@ template <int d>
 Square<d> masked(const double* values, const std::vector<char>& solved, Index row, Index column) {
   Square<d> block = Eigen::Map<const Square<d>>(values);
   for (int k = 0; k < d; ++k) {
-    if (solved[static_cast<std::size_t>(row * d + k)] == 0) block.row(k).setZero();
-    if (solved[static_cast<std::size_t>(column * d + k)] == 0) block.col(k).setZero();
+    if (solved[std::size_t(row * d + k)] == 0) block.row(k).setZero();
+    if (solved[std::size_t(column * d + k)] == 0) block.col(k).setZero();
   }
   return block;
 }
@@ -33,12 +33,12 @@ Square<d> masked(const double* values, const std::vector<char>& solved, Index ro
 /// it.
 template <int d>
 void invert_factors(const Vector& blocks, const std::vector<char>& solved, std::vector<float>& result) {
-  result.assign(static_cast<std::size_t>(blocks.size()) + 1, 0.0F);
+  result.assign(std::size_t(blocks.size()) + 1, 0.0F);
   parallel_ranges(blocks.size() / (d * d), [&](Index begin, Index end) {
     for (Index node = begin; node < end; ++node) {
       Square<d> own = masked<d>(blocks.data() + node * d * d, solved, node, node);
       for (int a = 0; a < d; ++a) {
-        if (solved[static_cast<std::size_t>(node * d + a)] == 0) own(a, a) = 1.0;
+        if (solved[std::size_t(node * d + a)] == 0) own(a, a) = 1.0;
       }
       const Eigen::LLT<Square<d>> factor(own);
       Square<d> inverse = Square<d>::Identity();
@@ -60,7 +60,7 @@ void scale_blocks(const NodeMatrix& matrix, const std::vector<char>& solved, con
     pattern.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
       const Square<d> own = factor_of(node);
       for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k) {
-        const Index other = pattern.column[static_cast<std::size_t>(k)];
+        const Index other = pattern.column[std::size_t(k)];
         const Square<d> block = masked<d>(matrix.values().data() + k * d * d, solved, node, other);
         Eigen::Map<SingleSquare<d>>(result.data() + k * d * d) =
             (own * block * factor_of(other).transpose()).template cast<float>();
@@ -102,8 +102,8 @@ double SinglePrecisionCg::multiply() {
   parallel_ranges(pattern.parts(), [&](Index first, Index last) {
     const FlushDenormals flush;
     for (Index part = first; part < last; ++part) {
-      sums[static_cast<std::size_t>(part)] = multiply_single_rows(
-          part_rows(pattern, part, values_.data()), matrix_.dimension(), direction_.data(), image_.data());
+      sums[std::size_t(part)] = multiply_single_rows(part_rows(pattern, part, values_.data()), matrix_.dimension(),
+                                                     direction_.data(), image_.data());
     }
   });
   double total = 0.0;
@@ -117,8 +117,7 @@ double SinglePrecisionCg::multiply() {
 /// Returns |r̂|² from the sum over this rank's nodes, which includes nodes owned by others.
 double SinglePrecisionCg::squared_norm(double of_all_nodes) const {
   const int d = matrix_.dimension();
-  for (const Index node : ranks_.not_owned())
-    of_all_nodes -= static_cast<double>(residual_.segment(node * d, d).squaredNorm());
+  for (const Index node : ranks_.not_owned()) of_all_nodes -= double(residual_.segment(node * d, d).squaredNorm());
   return ranks_.sum(of_all_nodes);
 }
 
@@ -179,7 +178,7 @@ ConjugateGradients::Result SinglePrecisionCg::solve(const Vector& residual, doub
     const double curvature = multiply();
     if (!(curvature > 0.0) || !std::isfinite(squared)) break;
     ++result.iterations;
-    const auto length = static_cast<float>(squared / curvature);
+    const auto length = float(squared / curvature);
     const double next = squared_norm(parallel_sum<double>(x.size(), [&](Index begin, Index end) {
       const FlushDenormals flush;
       double sum = 0.0;
@@ -188,11 +187,11 @@ ConjugateGradients::Result SinglePrecisionCg::solve(const Vector& residual, doub
         const Index count = std::min(stretch, end - at);
         x_.segment(at, count) += length * direction_.segment(at, count);
         residual_.segment(at, count) -= length * image_.segment(at, count);
-        sum += static_cast<double>(residual_.segment(at, count).squaredNorm());
+        sum += double(residual_.segment(at, count).squaredNorm());
       }
       return sum;
     }));
-    const auto factor = static_cast<float>(next / squared);
+    const auto factor = float(next / squared);
     squared = next;
     parallel_ranges(x.size(), [&](Index begin, Index end) {
       const FlushDenormals flush;

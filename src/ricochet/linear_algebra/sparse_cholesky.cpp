@@ -21,8 +21,8 @@ namespace {
 /// Returns a view without copying, for functions that do not write.
 cholmod_sparse view(int size, const int* begin, const int* rows, const double* values, int triangle) {
   cholmod_sparse result{};
-  result.nrow = result.ncol = static_cast<std::size_t>(size);
-  result.nzmax = static_cast<std::size_t>(begin[size]);
+  result.nrow = result.ncol = std::size_t(size);
+  result.nzmax = std::size_t(begin[size]);
   result.p = const_cast<int*>(begin);
   result.i = const_cast<int*>(rows);
   result.x = const_cast<double*>(values);
@@ -112,9 +112,8 @@ class SavedHandlers {
 }  // namespace
 
 void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
-  permutation.resize(static_cast<std::size_t>(matrix.cols()));
-  cholmod_sparse upper =
-      view(static_cast<int>(matrix.cols()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), 1);
+  permutation.resize(std::size_t(matrix.cols()));
+  cholmod_sparse upper = view(int(matrix.cols()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), 1);
   upper.sorted = 1;
   // METIS catches SIGTERM while it works, and jumps out of its own work half done.
   const BlockedSignals until_ordered;
@@ -122,27 +121,26 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   if (cholmod_metis(&upper, nullptr, 0, 1, permutation.data(), &common) == 0)
     throw std::runtime_error("ordering the matrix failed (METIS)");
   factor_indices.resize(permutation.size());
-  for (std::size_t i = 0; i < permutation.size(); ++i)
-    factor_indices[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < permutation.size(); ++i) factor_indices[std::size_t(permutation[i])] = int(i);
   store_ordered(matrix);
 }
 
 /// Stores the lower triangle of P A Pᵀ. Its storage grows only once.
 void SparseCholesky::Implementation::store_ordered(const SparseMatrix& matrix) {
-  const int size = static_cast<int>(matrix.cols());
+  const int size = int(matrix.cols());
   const auto visit = [&](const auto& enter) {
     for (int column = 0; column < size; ++column) {
-      for (SparseMatrix::InnerIterator entry(matrix, permutation[static_cast<std::size_t>(column)]); entry; ++entry) {
-        const int row = factor_indices[static_cast<std::size_t>(entry.row())];
+      for (SparseMatrix::InnerIterator entry(matrix, permutation[std::size_t(column)]); entry; ++entry) {
+        const int row = factor_indices[std::size_t(entry.row())];
         if (row >= column) enter(column, row, entry.value());
       }
     }
   };
-  ordered.begin.assign(static_cast<std::size_t>(size) + 1, 0);
-  visit([&](int column, int, double) { ++ordered.begin[static_cast<std::size_t>(column) + 1]; });
+  ordered.begin.assign(std::size_t(size) + 1, 0);
+  visit([&](int column, int, double) { ++ordered.begin[std::size_t(column) + 1]; });
   for (std::size_t column = 0; column < permutation.size(); ++column)
     ordered.begin[column + 1] += ordered.begin[column];
-  ordered.rows.resize(static_cast<std::size_t>(ordered.begin.back()));
+  ordered.rows.resize(std::size_t(ordered.begin.back()));
   ordered.values.resize(ordered.rows.size());
   std::size_t at = 0;
   visit([&](int, int row, double value) {
@@ -152,8 +150,7 @@ void SparseCholesky::Implementation::store_ordered(const SparseMatrix& matrix) {
 }
 
 cholmod_sparse SparseCholesky::Implementation::ordered_view() const {
-  return view(static_cast<int>(permutation.size()), ordered.begin.data(), ordered.rows.data(), ordered.values.data(),
-              -1);
+  return view(int(permutation.size()), ordered.begin.data(), ordered.rows.data(), ordered.values.data(), -1);
 }
 
 void SparseCholesky::Implementation::analyse() {
@@ -166,7 +163,7 @@ void SparseCholesky::Implementation::analyse() {
   prediction = {true, common.lnz, common.fl};
   if (factor != nullptr && common.status != CHOLMOD_TOO_LARGE) {
     entries = factor->xsize;
-    prediction.entries = static_cast<double>(entries);
+    prediction.entries = double(entries);
     return;
   }
   if (common.status != CHOLMOD_TOO_LARGE) throw std::bad_alloc();
@@ -184,9 +181,8 @@ void SparseCholesky::Implementation::require_possible() const {
 void SparseCholesky::Implementation::find_scale() {
   double largest = 0.0;
   for (std::size_t column = 0; column < permutation.size(); ++column) {
-    for (auto k = static_cast<std::size_t>(ordered.begin[column]);
-         k < static_cast<std::size_t>(ordered.begin[column + 1]); ++k)
-      if (ordered.rows[k] == static_cast<int>(column)) largest = std::max(largest, std::abs(ordered.values[k]));
+    for (auto k = std::size_t(ordered.begin[column]); k < std::size_t(ordered.begin[column + 1]); ++k)
+      if (ordered.rows[k] == int(column)) largest = std::max(largest, std::abs(ordered.values[k]));
   }
   int exponent = 0;
   std::frexp(largest, &exponent);
@@ -196,7 +192,7 @@ void SparseCholesky::Implementation::find_scale() {
 /// Copies the structure of the factor, which is all that is used of CHOLMOD's result.
 void SparseCholesky::Implementation::copy_structure() {
   numeric.reset();
-  supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
+  supernodal = SupernodalFactor({Index(factor->nsuper), static_cast<const int*>(factor->super),
                                  static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s)});
   cholmod_free_factor(&factor, &common);
 }
@@ -210,7 +206,7 @@ void SparseCholesky::Implementation::factorize() {
   }
   if (!numeric) numeric = std::make_unique<NumericFactorization>(supernodal);
   const Index column = numeric->run({ordered.begin.data(), ordered.rows.data(), ordered.values.data()}, scale);
-  failed = column < 0 ? -1 : permutation[static_cast<std::size_t>(column)];
+  failed = column < 0 ? -1 : permutation[std::size_t(column)];
 }
 
 void SparseCholesky::Implementation::factorize_by_library() {
@@ -228,7 +224,7 @@ void SparseCholesky::Implementation::factorize_by_library() {
 
 void SparseCholesky::Implementation::library_solve(int system, Vector& values) {
   cholmod_dense right{};
-  right.nrow = right.d = right.nzmax = static_cast<std::size_t>(values.size());
+  right.nrow = right.d = right.nzmax = std::size_t(values.size());
   right.ncol = 1;
   right.x = values.data();
   right.xtype = CHOLMOD_REAL;
@@ -292,7 +288,7 @@ SparseCholesky::Prediction SparseCholesky::predicted() const {
 }
 
 Index SparseCholesky::size() const {
-  return static_cast<Index>(implementation_->permutation.size());
+  return Index(implementation_->permutation.size());
 }
 bool SparseCholesky::positive_definite() const {
   return failed_unknown() < 0;
@@ -316,7 +312,7 @@ const std::vector<int>& SparseCholesky::permutation() const {
   return implementation_->permutation;
 }
 Index SparseCholesky::factor_index(Index unknown) const {
-  return implementation_->factor_indices[static_cast<std::size_t>(unknown)];
+  return implementation_->factor_indices[std::size_t(unknown)];
 }
 const SupernodalFactor& SparseCholesky::supernodal() const {
   return implementation_->supernodal;
@@ -346,7 +342,7 @@ void SparseCholesky::solve_upper(Vector& y) {
 void SparseCholesky::forward(const Vector& right_hand_side, Vector& y) {
   const Implementation& own = *implementation_;
   y.resize(work_size());
-  for (Index i = 0; i < size(); ++i) y[i] = own.scale * right_hand_side[own.permutation[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < size(); ++i) y[i] = own.scale * right_hand_side[own.permutation[std::size_t(i)]];
   solve_lower(y);
 }
 
@@ -355,7 +351,7 @@ void SparseCholesky::backward(const Vector& y, Vector& x) {
   own.permuted = y;
   solve_upper(own.permuted);
   x.resize(size());
-  for (Index i = 0; i < size(); ++i) x[own.permutation[static_cast<std::size_t>(i)]] = own.permuted[i];
+  for (Index i = 0; i < size(); ++i) x[own.permutation[std::size_t(i)]] = own.permuted[i];
 }
 
 void SparseCholesky::solve(const Vector& right_hand_side, Vector& x) {

@@ -12,18 +12,18 @@ SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_num
   if (columns == 0) return result;  // Eigen's makeCompressed accesses a first column without checking that it exists
   std::vector<int> counts(static_cast<std::size_t>(columns), 0);
   for (Index j = 0; j < matrix.cols(); ++j) {
-    const int column = column_number[static_cast<std::size_t>(j)];
+    const int column = column_number[std::size_t(j)];
     if (column < 0) continue;
     for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
-      counts[static_cast<std::size_t>(column)] += row_number[static_cast<std::size_t>(entry.row())] >= 0 ? 1 : 0;
+      counts[std::size_t(column)] += row_number[std::size_t(entry.row())] >= 0 ? 1 : 0;
     }
   }
   result.reserve(counts);
   for (Index j = 0; j < matrix.cols(); ++j) {
-    const int column = column_number[static_cast<std::size_t>(j)];
+    const int column = column_number[std::size_t(j)];
     if (column < 0) continue;
     for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
-      const int row = row_number[static_cast<std::size_t>(entry.row())];
+      const int row = row_number[std::size_t(entry.row())];
       if (row >= 0) result.insert(row, column) = entry.value();
     }
   }
@@ -70,7 +70,7 @@ SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b) {
     for (Index column = first; column < last; ++column) {
       int at = begins[column];
       merge_column(a, b, column, [&](Index row, double value) {
-        result.innerIndexPtr()[at] = static_cast<int>(row);
+        result.innerIndexPtr()[at] = int(row);
         result.valuePtr()[at++] = value;
       });
     }
@@ -80,7 +80,7 @@ SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b) {
 
 SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>& left_out) {
   SparseMatrix result(pattern.rows(), pattern.cols());
-  const auto is_out = [&](Index i) { return left_out[static_cast<std::size_t>(i)] != 0; };
+  const auto is_out = [&](Index i) { return left_out[std::size_t(i)] != 0; };
   int* const outer = result.outerIndexPtr();
   for (int pass = 0; pass < 2; ++pass) {
     int position = 0;
@@ -90,7 +90,7 @@ SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>&
       for (SparseMatrix::InnerIterator entry(pattern, column); entry; ++entry) {
         if (is_out(entry.row())) continue;
         if (pass > 0) {
-          result.innerIndexPtr()[position] = static_cast<int>(entry.row());
+          result.innerIndexPtr()[position] = int(entry.row());
           result.valuePtr()[position] = 0.0;
         }
         ++position;
@@ -105,7 +105,7 @@ SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>&
 double* stored_entry(SparseMatrix& matrix, Index row, Index column) {
   const int* const begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column];
   const int* const end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
-  const int* const at = std::lower_bound(begin, end, static_cast<int>(row));
+  const int* const at = std::lower_bound(begin, end, int(row));
   return at != end && *at == row ? matrix.valuePtr() + (at - matrix.innerIndexPtr()) : nullptr;
 }
 

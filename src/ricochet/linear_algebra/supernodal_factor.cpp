@@ -46,7 +46,7 @@ SupernodalFactor::SupernodalFactor(const SupernodalStructure& shape) {
 }
 
 void SupernodalFactor::read_shape(const SupernodalStructure& shape) {
-  const auto count = static_cast<std::size_t>(shape.supernodes);
+  const auto count = std::size_t(shape.supernodes);
   size_ = shape.supernodes == 0 ? 0 : shape.first_column[shape.supernodes];
   supernodes_.resize(count);
   std::vector<int> supernode_of_column(static_cast<std::size_t>(size_));
@@ -55,14 +55,14 @@ void SupernodalFactor::read_shape(const SupernodalStructure& shape) {
     node.first = shape.first_column[s];
     node.columns = shape.first_column[s + 1] - node.first;
     node.below = shape.row_start[s + 1] - shape.row_start[s] - node.columns;
-    node.number = static_cast<int>(s);
+    node.number = int(s);
     std::fill_n(supernode_of_column.begin() + node.first, node.columns, node.number);
   }
   parent_.resize(count);
   for (std::size_t s = 0; s < count; ++s) {
     const Supernode& node = supernodes_[s];
     const int* below = shape.rows + shape.row_start[s] + node.columns;
-    parent_[s] = node.below == 0 ? -1 : supernode_of_column[static_cast<std::size_t>(*below)];
+    parent_[s] = node.below == 0 ? -1 : supernode_of_column[std::size_t(*below)];
   }
 }
 
@@ -74,17 +74,17 @@ std::vector<int> SupernodalFactor::subtrees(std::vector<double> weights, double 
   for (std::size_t s = 0; s < count; ++s) {
     descendants[s] += 1;
     if (parent_[s] < 0) continue;
-    const auto parent = static_cast<std::size_t>(parent_[s]);
+    const auto parent = std::size_t(parent_[s]);
     weights[parent] += weights[s];
     descendants[parent] += descendants[s];
     first[parent] = std::min(first[parent], first[s]);
   }
   for (std::size_t s = count; s-- > 0;) {
-    const bool side_by_side = static_cast<Index>(s) - first[s] + 1 == descendants[s];
-    if (parent_[s] >= 0 && root[static_cast<std::size_t>(parent_[s])] >= 0) {
-      root[s] = root[static_cast<std::size_t>(parent_[s])];
+    const bool side_by_side = Index(s) - first[s] + 1 == descendants[s];
+    if (parent_[s] >= 0 && root[std::size_t(parent_[s])] >= 0) {
+      root[s] = root[std::size_t(parent_[s])];
     } else if (side_by_side && weights[s] <= most) {
-      root[s] = static_cast<int>(s);
+      root[s] = int(s);
     }
   }
   return root;
@@ -98,7 +98,7 @@ void SupernodalFactor::partition() {
   double total = 0.0;
   for (std::size_t s = 0; s < count; ++s) {
     const Supernode& node = supernodes_[s];
-    sizes[s] = static_cast<double>(SupernodeLayout(node.columns, node.columns + node.below).size());
+    sizes[s] = double(SupernodeLayout(node.columns, node.columns + node.below).size());
     total += sizes[s];
   }
   const std::vector<int> part = subtrees(sizes, total < least_divided_size ? -1.0 : total / parts_per_factor);
@@ -116,8 +116,7 @@ void SupernodalFactor::partition() {
   }
   supernodes_ = std::move(ordered);
   position_.resize(count);
-  for (std::size_t k = 0; k < count; ++k)
-    position_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
+  for (std::size_t k = 0; k < count; ++k) position_[std::size_t(supernodes_[k].number)] = int(k);
 }
 
 void SupernodalFactor::allocate_numbers(const SupernodalStructure& shape) {
@@ -129,8 +128,8 @@ void SupernodalFactor::allocate_numbers(const SupernodalStructure& shape) {
     node.stream_end = stream_size;
     row_count += node.below;
   }
-  stream_ = HugePageBuffer(static_cast<std::size_t>(stream_size));
-  rows_.resize(static_cast<std::size_t>(row_count));
+  stream_ = HugePageBuffer(std::size_t(stream_size));
+  rows_.resize(std::size_t(row_count));
   for (const Supernode& node : supernodes_) {
     const int* below = shape.rows + shape.row_start[node.number] + node.columns;
     std::copy_n(below, node.below, rows_.begin() + node.rows);
@@ -139,8 +138,8 @@ void SupernodalFactor::allocate_numbers(const SupernodalStructure& shape) {
   row_of_work_.clear();
   for (Part& part : parts_) number_boundary(part);
   const auto shared = [&](const Supernode& node) { return is_shared(parts_.back(), node); };
-  if (std::any_of(supernodes_.begin() + static_cast<std::ptrdiff_t>(parts_.back().begin), supernodes_.end(), shared))
-    sums_.resize(static_cast<std::size_t>(WideSupernode::sums_size()));
+  if (std::any_of(supernodes_.begin() + std::ptrdiff_t(parts_.back().begin), supernodes_.end(), shared))
+    sums_.resize(std::size_t(WideSupernode::sums_size()));
 }
 
 /// Replaces rows beyond a part's own columns by indices in the work space of y.
@@ -148,7 +147,7 @@ void SupernodalFactor::number_boundary(Part& part) {
   Index max_rows = 0;
   for (std::size_t k = part.begin; k < part.end; ++k)
     max_rows = std::max<Index>(max_rows, supernodes_[k].columns + supernodes_[k].below);
-  part.work.assign(static_cast<std::size_t>(max_rows) + 1, 0.0);
+  part.work.assign(std::size_t(max_rows) + 1, 0.0);
   part.boundary_start = work_size_;
   if (&part == &parts_.back()) return;
   // The rows of a descendant beyond the root are among those of the root.
@@ -156,13 +155,13 @@ void SupernodalFactor::number_boundary(Part& part) {
   part.boundary.assign(rows_.begin() + root.rows, rows_.begin() + root.rows + root.below);
   const int beyond = root.first + root.columns;
   for (Index k = supernodes_[part.begin].rows; k < root.rows + root.below; ++k) {
-    int& row = rows_[static_cast<std::size_t>(k)];
+    int& row = rows_[std::size_t(k)];
     if (row < beyond) continue;
     const auto at = std::ranges::lower_bound(part.boundary, row) - part.boundary.begin();
-    row = static_cast<int>(part.boundary_start + at);
+    row = int(part.boundary_start + at);
   }
   row_of_work_.insert(row_of_work_.end(), part.boundary.begin(), part.boundary.end());
-  work_size_ += static_cast<Index>(part.boundary.size());
+  work_size_ += Index(part.boundary.size());
 }
 
 std::size_t SupernodalFactor::bytes() const {
@@ -203,8 +202,7 @@ void SupernodalFactor::forward(const Part& part, double* y) const {
 
 void SupernodalFactor::backward(const Part& part, double* y) const {
   double* const w = part.work.data();
-  for (std::size_t i = 0; i < part.boundary.size(); ++i)
-    y[part.boundary_start + static_cast<Index>(i)] = y[part.boundary[i]];
+  for (std::size_t i = 0; i < part.boundary.size(); ++i) y[part.boundary_start + Index(i)] = y[part.boundary[i]];
   for (std::size_t k = part.end; k-- > part.begin;) {
     const Supernode& node = supernodes_[k];
     const Index size = node.columns + node.below;
@@ -220,14 +218,13 @@ void SupernodalFactor::backward(const Part& part, double* y) const {
 
 void SupernodalFactor::forward(Vector& y) const {
   if (size_ == 0) return;
-  const auto subtrees = static_cast<Index>(parts_.size()) - 1;
+  const auto subtrees = Index(parts_.size()) - 1;
   parallel_ranges(subtrees, [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) forward(parts_[static_cast<std::size_t>(k)], y.data());
+    for (Index k = begin; k < end; ++k) forward(parts_[std::size_t(k)], y.data());
   });
   for (Index k = 0; k < subtrees; ++k) {
-    const Part& part = parts_[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < part.boundary.size(); ++i)
-      y[part.boundary[i]] += y[part.boundary_start + static_cast<Index>(i)];
+    const Part& part = parts_[std::size_t(k)];
+    for (std::size_t i = 0; i < part.boundary.size(); ++i) y[part.boundary[i]] += y[part.boundary_start + Index(i)];
   }
   forward(parts_.back(), y.data());
 }
@@ -235,8 +232,8 @@ void SupernodalFactor::forward(Vector& y) const {
 void SupernodalFactor::backward(Vector& y) const {
   if (size_ == 0) return;
   backward(parts_.back(), y.data());
-  parallel_ranges(static_cast<Index>(parts_.size()) - 1, [&](Index begin, Index end) {
-    for (Index k = end; k-- > begin;) backward(parts_[static_cast<std::size_t>(k)], y.data());
+  parallel_ranges(Index(parts_.size()) - 1, [&](Index begin, Index end) {
+    for (Index k = end; k-- > begin;) backward(parts_[std::size_t(k)], y.data());
   });
 }
 
@@ -245,19 +242,18 @@ FactorPath SupernodalFactor::path(const std::vector<Index>& rows) const {
   const auto first_beyond = [&](Index row) {
     // Columns ascend with the supernode's number.
     return std::partition_point(position_.begin(), position_.end(),
-                                [&](int index) { return supernodes_[static_cast<std::size_t>(index)].first <= row; });
+                                [&](int index) { return supernodes_[std::size_t(index)].first <= row; });
   };
   for (const Index row : rows) {
-    auto s = static_cast<int>(first_beyond(row) - position_.begin()) - 1;
-    for (; s >= 0 && reached[static_cast<std::size_t>(s)] == 0; s = parent_[static_cast<std::size_t>(s)])
-      reached[static_cast<std::size_t>(s)] = 1;
+    auto s = int(first_beyond(row) - position_.begin()) - 1;
+    for (; s >= 0 && reached[std::size_t(s)] == 0; s = parent_[std::size_t(s)]) reached[std::size_t(s)] = 1;
   }
   FactorPath path;
   path.offsets.push_back(0);
   for (std::size_t s = 0; s < reached.size(); ++s) {
     if (reached[s] == 0) continue;
-    const Supernode& node = supernodes_[static_cast<std::size_t>(position_[s])];
-    path.supernodes.push_back(static_cast<int>(s));
+    const Supernode& node = supernodes_[std::size_t(position_[s])];
+    path.supernodes.push_back(int(s));
     path.first.push_back(node.first);
     path.offsets.push_back(path.offsets.back() + node.columns);
   }
@@ -268,11 +264,11 @@ void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) 
   std::vector<int> position(static_cast<std::size_t>(size_), -1);
   for (std::size_t k = 0; k < path.supernodes.size(); ++k) {
     for (Index i = path.offsets[k]; i < path.offsets[k + 1]; ++i)
-      position[static_cast<std::size_t>(path.first[k] + i - path.offsets[k])] = static_cast<int>(i);
+      position[std::size_t(path.first[k] + i - path.offsets[k])] = int(i);
   }
   const auto path_index = [&](int row) {
-    const int in_factor = row < size_ ? row : row_of_work_[static_cast<std::size_t>(row - size_)];
-    return position[static_cast<std::size_t>(in_factor)];
+    const int in_factor = row < size_ ? row : row_of_work_[std::size_t(row - size_)];
+    return position[std::size_t(in_factor)];
   };
   // Eight columns side by side.
   using Rows = Eigen::Matrix<double, 8, Eigen::Dynamic>;
@@ -282,8 +278,7 @@ void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) 
     eight.setZero();
     eight.topRows(count) = columns.middleCols(first, count).transpose();
     for (std::size_t k = 0; k < path.supernodes.size(); ++k) {
-      const Supernode& node =
-          supernodes_[static_cast<std::size_t>(position_[static_cast<std::size_t>(path.supernodes[k])])];
+      const Supernode& node = supernodes_[std::size_t(position_[std::size_t(path.supernodes[k])])];
       const int* rows = rows_.data() + node.rows;
       w.setZero(8, node.columns + node.below + 1);
       w.leftCols(node.columns) = eight.middleCols(path.offsets[k], node.columns);

@@ -77,17 +77,17 @@ class SupernodalFactor {
     Index stream = 0, stream_end = 0;  ///< range of its numbers in the stream
     Index rows = 0;                    ///< index in rows_ of its first row below
   };
-  [[nodiscard]] Index supernode_count() const { return static_cast<Index>(supernodes_.size()); }
+  [[nodiscard]] Index supernode_count() const { return Index(supernodes_.size()); }
   [[nodiscard]] const Supernode& supernode(Index number) const {
-    return supernodes_[static_cast<std::size_t>(position_[static_cast<std::size_t>(number)])];
+    return supernodes_[std::size_t(position_[std::size_t(number)])];
   }
   /// Numbers of a supernode in the layout of linear_algebra/supernode_layout.hpp.
   [[nodiscard]] double* numbers(const Supernode& node) { return stream_.data() + node.stream; }
   /// Row of the factor for a row of a supernode.
   [[nodiscard]] int row(const Supernode& node, Index i) const {
-    if (i < node.columns) return node.first + static_cast<int>(i);
-    const int row = rows_[static_cast<std::size_t>(node.rows + i - node.columns)];
-    return row < size_ ? row : row_of_work_[static_cast<std::size_t>(row - size_)];
+    if (i < node.columns) return node.first + int(i);
+    const int row = rows_[std::size_t(node.rows + i - node.columns)];
+    return row < size_ ? row : row_of_work_[std::size_t(row - size_)];
   }
   /// Returns per supernode the root of the largest subtree that contains it and whose weights sum to at most `most`; −1
   /// if none. The supernodes of such a subtree are contiguous.

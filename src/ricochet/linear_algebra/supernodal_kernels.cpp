@@ -53,7 +53,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const 
 
 template <StreamCount P, int C>
 RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index rows_below, double* w) {
-  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  constexpr int lanes = int(triangle_lanes(C));
   Pack<lanes> solved = load<lanes>(stream) * w[0];
   for (int j = 1; j < C; ++j) solved += load<lanes>(stream + lanes * j) * w[j];
   stream += lanes * C;
@@ -132,7 +132,7 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
     }
   }
   stream -= (streams - 1) * apart * C;
-  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  constexpr int lanes = int(triangle_lanes(C));
   stream -= lanes * C;
   Pack<lanes> right{};
   for (int j = 0; j < C; ++j) right[j] = w[j] - (sum(products[j]) + product[j]);
@@ -152,7 +152,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel_eight(const double* stream, 
 
 template <int C>
 RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, Index rows_below, double* w) {
-  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  constexpr int lanes = int(triangle_lanes(C));
   Pack<8> x[C];
   for (int i = 0; i < C; ++i) {
     x[i] = stream[i] * load<8>(w);
@@ -282,7 +282,7 @@ RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
 
 template <int C>
 RICOCHET_PART_OF_CALLER void backward_triangle(const double* triangle, const double* sums, double* w) {
-  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  constexpr int lanes = int(triangle_lanes(C));
   Pack<lanes> right{};
   for (int j = 0; j < C; ++j) right[j] = w[j] - sum(load<8>(sums + 8 * j));
   for (int j = 0; j < C; ++j) w[j] = sum(load<lanes>(triangle + lanes * j) * right);

@@ -39,7 +39,7 @@ void solve(const AffineFrame& frame, int dimension, const double* x, double* xi)
 
 /// Moves the origin of the frame to the centre of gravity and normalizes the second moments to the identity.
 bool normalize(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
-  const int d = static_cast<int>(nodes.rows());
+  const int d = int(nodes.rows());
   double mean[3] = {}, second[3][3] = {}, xi[3];
   for (int pass = 0; pass < 2; ++pass) {
     for (int j = 0; j < count; ++j) {
@@ -66,7 +66,7 @@ bool normalize(const Points& nodes, const int* of, int count, const Vector& node
 
 /// Computes 2 − G, the inverse of a G that is the identity up to rounding.
 void invert_gram(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
-  const int d = static_cast<int>(nodes.rows());
+  const int d = int(nodes.rows());
   for (int a = 0; a <= d; ++a) frame.inverse_gram[a][a] = 2.0;
   for (int j = 0; j < count; ++j) {
     double p[4] = {1.0};
@@ -110,7 +110,7 @@ void affine_change(const AffineFrame& from, const AffineFrame& to, int dimension
 }
 
 bool make_affine_frame(const Points& nodes, const int* of, int count, const Vector& node_weights, AffineFrame& frame) {
-  const int d = static_cast<int>(nodes.rows());
+  const int d = int(nodes.rows());
   if (count <= d) return false;
   frame = {};
   double size[3] = {}, largest[3] = {};

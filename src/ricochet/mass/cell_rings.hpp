@@ -29,11 +29,11 @@ class CellRings {
   /// Nodes of all these cells, ascending and unique.
   [[nodiscard]] std::vector<Index> nodes() const;
 
-  [[nodiscard]] const int* nodes(int cell) const { return nodes_.data() + first_node_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const int* nodes(int cell) const { return nodes_.data() + first_node_[std::size_t(cell)]; }
   [[nodiscard]] int node_count(int cell) const {
-    return first_node_[static_cast<std::size_t>(cell) + 1] - first_node_[static_cast<std::size_t>(cell)];
+    return first_node_[std::size_t(cell) + 1] - first_node_[std::size_t(cell)];
   }
-  [[nodiscard]] int count() const { return static_cast<int>(first_node_.size()) - 1; }
+  [[nodiscard]] int count() const { return int(first_node_.size()) - 1; }
 
  private:
   static constexpr int most_facets = 6;

@@ -59,7 +59,7 @@ class CellwiseBuilder {
   SparseMatrix build();
 
  private:
-  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
+  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[std::size_t(node)] != 0; }
   void add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight);
   void keep_inertia(const std::vector<Index>& nodes, const Matrix& inertia, double weight);
   void find_donors();
@@ -105,13 +105,13 @@ constexpr int sweeps = 3;
 
 CellwiseBuilder::CellwiseBuilder(const MassInput& input)
     : input_(input),
-      d_(static_cast<int>(input.nodes->rows())),
+      d_(int(input.nodes->rows())),
       is_contact_(input.marked_contact_nodes()),
       inertia_diagonal_(input.inertia_matrix().diagonal()),
       retained_diagonal_(Vector::Zero(inertia_diagonal_.size())),
       result_(zeros_without(input.inertia_matrix(), is_contact_)),
       rings_(*input.cells, input.nodes->cols()),
-      donor_number_(static_cast<std::size_t>(rings_.count()), -2) {}
+      donor_number_(std::size_t(rings_.count()), -2) {}
 
 SparseMatrix CellwiseBuilder::build() {
   const bool is_inertia = input_.consistent == &input_.inertia_matrix();
@@ -128,23 +128,22 @@ SparseMatrix CellwiseBuilder::build() {
 /// Adds m_T, of a contact cell S_T = m_FF − m_FC m_CC⁻¹ m_CF: contact nodes are eliminated one after the other, and
 /// each elimination adds the removed matrix r rᵀ/m_cc, with the column r of the contact node, to R_T.
 void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
-  const auto count = static_cast<Index>(nodes.size());
+  const auto count = Index(nodes.size());
   if (std::ranges::none_of(nodes, [this](Index node) { return is_contact(node); }))
     return keep_inertia(nodes, inertia, weight);
   ContactCell contact_cell;
   contact_cell.cell = cell;
   contact_cell.weight = weight;
-  if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), static_cast<int>(count), inertia_diagonal_,
-                         contact_cell.frame))
+  if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), int(count), inertia_diagonal_, contact_cell.frame))
     refuse(contact_cell);
   remains_ = inertia;
   for (Index c = 0; c < count; ++c) {
-    if (!is_contact(nodes[static_cast<std::size_t>(c)])) continue;
+    if (!is_contact(nodes[std::size_t(c)])) continue;
     const double pivot = remains_(c, c);
     double moments[4] = {};
     for (Index i = 0; i < count; ++i) {
       double p[4] = {1.0};
-      affine_coordinates(contact_cell.frame, d_, input_.nodes->col(nodes[static_cast<std::size_t>(i)]).data(), p + 1);
+      affine_coordinates(contact_cell.frame, d_, input_.nodes->col(nodes[std::size_t(i)]).data(), p + 1);
       for (int a = 0; a <= d_; ++a) moments[a] += remains_(i, c) * p[a];
     }
     for (std::size_t a = 0; a < 4; ++a) {
@@ -162,13 +161,13 @@ void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const 
 
 /// Adds the inertia that a cell keeps. Only the lower triangle of `inertia` is used.
 void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
-  const auto count = static_cast<Index>(nodes.size());
+  const auto count = Index(nodes.size());
   for (Index j = 0; j < count; ++j) {
-    const Index column = nodes[static_cast<std::size_t>(j)];
+    const Index column = nodes[std::size_t(j)];
     if (is_contact(column)) continue;
     retained_diagonal_[column] += inertia(j, j);
     for (Index i = j; i < count; ++i) {
-      const Index row = nodes[static_cast<std::size_t>(i)];
+      const Index row = nodes[std::size_t(i)];
       if (is_contact(row)) continue;
       entry_of(result_, row, column) += weight * inertia(i, j);
       if (i != j) entry_of(result_, column, row) += weight * inertia(i, j);
@@ -177,7 +176,7 @@ void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix
 }
 
 int CellwiseBuilder::donor_of(int cell) {
-  int& number = donor_number_[static_cast<std::size_t>(cell)];
+  int& number = donor_number_[std::size_t(cell)];
   if (number != -2) return number;
   std::vector<int> massive;
   for (int k = 0; k < rings_.node_count(cell); ++k) {
@@ -186,11 +185,10 @@ int CellwiseBuilder::donor_of(int cell) {
   Donor donor;
   donor.cell = cell;
   number = -1;
-  if (!make_affine_frame(*input_.nodes, massive.data(), static_cast<int>(massive.size()), inertia_diagonal_,
-                         donor.frame))
+  if (!make_affine_frame(*input_.nodes, massive.data(), int(massive.size()), inertia_diagonal_, donor.frame))
     return number;
   donors_.push_back(donor);
-  return number = static_cast<int>(donors_.size()) - 1;
+  return number = int(donors_.size()) - 1;
 }
 
 /// Searches ring by ring until there are enough donors. If donors are rare, the search ends at twice the distance of
@@ -204,8 +202,7 @@ void CellwiseBuilder::find_donors() {
     do {
       for (; visited < rings_.cells().size(); ++visited) {
         Share share{donor_of(rings_.cells()[visited]), 0.0, 0.0, {}};
-        if (share.donor >= 0 &&
-            transform_inertia(donors_[static_cast<std::size_t>(share.donor)], contact_cell, share.inertia))
+        if (share.donor >= 0 && transform_inertia(donors_[std::size_t(share.donor)], contact_cell, share.inertia))
           shares_.push_back(share);
       }
       if (shares_.size() == contact_cell.first_share)
@@ -289,7 +286,7 @@ void CellwiseBuilder::update_parts(const ContactCell& contact_cell, std::size_t 
   double sum = 0.0, least = 0.0;
   for (std::size_t s = contact_cell.first_share; s < end; ++s) {
     Share& share = shares_[s];
-    const AffineInertia& costs = donors_[static_cast<std::size_t>(share.donor)].cost;
+    const AffineInertia& costs = donors_[std::size_t(share.donor)].cost;
     share.cost = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) share.cost += share.inertia[a][b] * costs[a][b];
@@ -306,8 +303,7 @@ void CellwiseBuilder::update_parts(const ContactCell& contact_cell, std::size_t 
 
 void CellwiseBuilder::receive(const ContactCell& contact_cell, std::size_t end, double weight) {
   for (std::size_t s = contact_cell.first_share; s < end; ++s) {
-    add_inertia(donors_[static_cast<std::size_t>(shares_[s].donor)].received, weight * shares_[s].part,
-                shares_[s].inertia);
+    add_inertia(donors_[std::size_t(shares_[s].donor)].received, weight * shares_[s].part, shares_[s].inertia);
   }
 }
 

@@ -46,7 +46,7 @@ class Builder {
   void require_massive_nodes_of_body(const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> massive_nodes_of(const std::vector<Index>& nodes) const;
   void extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const;
-  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
+  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[std::size_t(node)] != 0; }
   [[noreturn]] void refuse(const std::vector<Index>& nodes, const std::vector<Index>& body) const;
 
   const MassInput& input_;
@@ -67,7 +67,7 @@ void Builder::add_value(Index row, Index column, double value) {
   if (double* const entry = stored_entry(result_, row, column); entry != nullptr) {
     *entry += value;
   } else {
-    beyond_.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+    beyond_.emplace_back(int(row), int(column), value);
   }
 }
 
@@ -85,21 +85,19 @@ SparseMatrix Builder::build() {
 /// Adds E_eᵀ m_e E_e.
 void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
   ++number_;
-  const auto count = static_cast<Index>(nodes.size());
+  const auto count = Index(nodes.size());
   if (std::ranges::none_of(nodes, [this](Index node) { return is_contact(node); })) {
     for (Index j = 0; j < count; ++j) {
-      for (Index i = 0; i < count; ++i)
-        add_value(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], mass(i, j));
+      for (Index i = 0; i < count; ++i) add_value(nodes[std::size_t(i)], nodes[std::size_t(j)], mass(i, j));
     }
     return;
   }
   const CellExtension extension = extend(nodes);
   const Matrix moved = extension.rows.transpose() * mass * extension.rows;
-  const auto donors = static_cast<Index>(extension.donors.size());
+  const auto donors = Index(extension.donors.size());
   for (Index j = 0; j < donors; ++j) {
     for (Index i = 0; i < donors; ++i) {
-      add_value(extension.donors[static_cast<std::size_t>(i)], extension.donors[static_cast<std::size_t>(j)],
-                0.5 * (moved(i, j) + moved(j, i)));
+      add_value(extension.donors[std::size_t(i)], extension.donors[std::size_t(j)], 0.5 * (moved(i, j) + moved(j, i)));
     }
   }
 }
@@ -112,7 +110,7 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
   if (!rings_) start_rings();
   require_massive_nodes_of_body(nodes);
   rings_->start(number_ - 1);
-  for (const Index donor : donors) visited_by_[static_cast<std::size_t>(donor)] = number_;
+  for (const Index donor : donors) visited_by_[std::size_t(donor)] = number_;
   for (std::size_t ring = 1, visited = 1, tried = donors.size(); rings_->grow(); ++ring) {
     for (; visited < rings_->cells().size(); ++visited) add_massive_nodes(rings_->cells()[visited], donors);
     // Far away, a few additional donors make no difference.
@@ -131,25 +129,25 @@ CellExtension Builder::extend(const std::vector<Index>& nodes) {
 
 void Builder::start_rings() {
   rings_ = std::make_unique<CellRings>(*input_.cells, input_.consistent->cols());
-  is_checked_.assign(static_cast<std::size_t>(rings_->count()), 0);
+  is_checked_.assign(std::size_t(rings_->count()), 0);
   visited_by_.assign(is_contact_.size(), 0);
 }
 
 void Builder::add_massive_nodes(int cell, std::vector<Index>& donors) {
   for (int k = 0; k < rings_->node_count(cell); ++k) {
-    const auto node = static_cast<std::size_t>(rings_->nodes(cell)[k]);
+    const auto node = std::size_t(rings_->nodes(cell)[k]);
     if (is_contact_[node] != 0 || visited_by_[node] == number_) continue;
     visited_by_[node] = number_;
-    donors.push_back(static_cast<Index>(node));
+    donors.push_back(Index(node));
   }
 }
 
 /// Rejects, once per body, a body that no number of rings would remedy: the search would extend over it for every cell.
 void Builder::require_massive_nodes_of_body(const std::vector<Index>& nodes) {
-  if (is_checked_[static_cast<std::size_t>(number_ - 1)] != 0) return;
+  if (is_checked_[std::size_t(number_ - 1)] != 0) return;
   rings_->start(number_ - 1);
   while (rings_->grow()) continue;
-  for (const int cell : rings_->cells()) is_checked_[static_cast<std::size_t>(cell)] = 1;
+  for (const int cell : rings_->cells()) is_checked_[std::size_t(cell)] = 1;
   const std::vector<Index> body = rings_->nodes();
   if (!span_space(*input_.nodes, body, massive_nodes_of(body))) refuse(nodes, body);
 }
@@ -176,32 +174,32 @@ std::vector<Index> Builder::massive_nodes_of(const std::vector<Index>& nodes) co
 /// the donors do not span space.
 void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const {
   const Index dimension = input_.nodes->rows();
-  const auto count = static_cast<Index>(extension.donors.size());
+  const auto count = Index(extension.donors.size());
   if (count <= dimension) return;
   Vector centre = Vector::Zero(dimension), scale(count);
   for (Index k = 0; k < count; ++k) {
-    const Index donor = extension.donors[static_cast<std::size_t>(k)];
-    centre += input_.nodes->col(donor) / static_cast<double>(count);
+    const Index donor = extension.donors[std::size_t(k)];
+    centre += input_.nodes->col(donor) / double(count);
     scale[k] = inertia_diagonal_[donor];
   }
   scale = (scale / scale.maxCoeff()).cwiseSqrt();
   Matrix conditions(dimension + 1, count);
   for (Index k = 0; k < count; ++k) {
     conditions(0, k) = 1.0;
-    conditions.col(k).tail(dimension) = input_.nodes->col(extension.donors[static_cast<std::size_t>(k)]) - centre;
+    conditions.col(k).tail(dimension) = input_.nodes->col(extension.donors[std::size_t(k)]) - centre;
   }
   const double size = conditions.bottomRows(dimension).cwiseAbs().maxCoeff();
   conditions.bottomRows(dimension) /= size;
   const LeastNormSolver solver(conditions * scale.asDiagonal());
   if (solver.rank() <= dimension) return;
-  extension.rows.setZero(static_cast<Index>(nodes.size()), count);
+  extension.rows.setZero(Index(nodes.size()), count);
   Vector target(dimension + 1);
   target[0] = 1.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!is_contact(nodes[i])) {
       const auto own = std::ranges::lower_bound(extension.donors, nodes[i]);
-      extension.rows(static_cast<Index>(i), own - extension.donors.begin()) = 1.0;
+      extension.rows(Index(i), own - extension.donors.begin()) = 1.0;
       continue;
     }
     target.tail(dimension) = (input_.nodes->col(nodes[i]) - centre) / size;
@@ -209,7 +207,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
     // One step of iterative refinement, for flat cells.
     weights += scale.cwiseProduct(solver.solve(target - conditions * weights));
     largest = std::max(largest, weights.lpNorm<1>());
-    extension.rows.row(static_cast<Index>(i)) = weights.transpose();
+    extension.rows.row(Index(i)) = weights.transpose();
   }
   if (std::isfinite(largest)) extension.weights = largest;
 }

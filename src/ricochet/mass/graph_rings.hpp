@@ -11,12 +11,11 @@ namespace ricochet {
 class GraphRings {
  public:
   /// Refers to the matrix.
-  explicit GraphRings(const SparseMatrix& graph)
-      : graph_(graph), visited_by_(static_cast<std::size_t>(graph.cols()), -1) {}
+  explicit GraphRings(const SparseMatrix& graph) : graph_(graph), visited_by_(std::size_t(graph.cols()), -1) {}
 
   void start(Index node) {
     front_.assign(1, start_ = node);
-    visited_by_[static_cast<std::size_t>(node)] = node;
+    visited_by_[std::size_t(node)] = node;
   }
   /// Visits each node of the next ring; returns false if it has none.
   template <class Visit>
@@ -24,7 +23,7 @@ class GraphRings {
     next_.clear();
     for (const Index from : front_) {
       for (SparseMatrix::InnerIterator entry(graph_, from); entry; ++entry) {
-        Index& visited_by = visited_by_[static_cast<std::size_t>(entry.row())];
+        Index& visited_by = visited_by_[std::size_t(entry.row())];
         if (visited_by == start_) continue;
         visited_by = start_;
         next_.push_back(entry.row());
@@ -38,7 +37,7 @@ class GraphRings {
   [[nodiscard]] std::vector<Index> nodes() const {
     std::vector<Index> result;
     for (std::size_t node = 0; node < visited_by_.size(); ++node) {
-      if (visited_by_[node] == start_) result.push_back(static_cast<Index>(node));
+      if (visited_by_[node] == start_) result.push_back(Index(node));
     }
     return result;
   }

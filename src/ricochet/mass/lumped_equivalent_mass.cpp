@@ -43,12 +43,12 @@ struct Moments {
 
 Moments moments_of(const MassInput& input, const MassFrames& frames, const MassBody& body) {
   const Index d = input.nodes->rows();
-  const auto count = static_cast<Index>(body.nodes.size());
+  const auto count = Index(body.nodes.size());
   Moments result;
   result.affine = d + 1;
   result.functions.resize(count, 1 + d + d * (d + 1) / 2);
   for (Index i = 0; i < count; ++i)
-    result.functions.row(i).head(d + 1) = frames.monomials.col(body.nodes[static_cast<std::size_t>(i)]).transpose();
+    result.functions.row(i).head(d + 1) = frames.monomials.col(body.nodes[std::size_t(i)]).transpose();
   const Matrix all = mass_moments(*input.consistent, frames, body);
   result.target.resize(result.functions.cols());
   result.target.head(d + 1) = all.col(0);
@@ -149,7 +149,7 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
     bool grows = true;
     while (massive.empty() && grows) {
       grows = rings.grow([&](Index neighbour) {
-        if (is_contact[static_cast<std::size_t>(neighbour)] != 0) return;
+        if (is_contact[std::size_t(neighbour)] != 0) return;
         massive.push_back(neighbour);
         sum += lumped[neighbour];
       });
@@ -190,7 +190,7 @@ void require_span(const MassInput& input, const MassBody& body, const Moments& m
   if (sizes[0] > least_spread * least_spread) return;
   std::vector<Index> massive;
   for (Index i = 0; i < mass.size(); ++i) {
-    if (mass[i] > 0.0) massive.push_back(body.nodes[static_cast<std::size_t>(i)]);
+    if (mass[i] > 0.0) massive.push_back(body.nodes[std::size_t(i)]);
   }
   std::ranges::sort(massive);
   refuse(input, body, describe_massive_nodes(*input.nodes, body.nodes, massive));
@@ -201,7 +201,7 @@ double balance(const MassInput& input, const MassFrames& frames, const MassBody&
   const char* const too_few = "too few nodes off the contact boundary to carry its mass about its centre of gravity";
   const Moments moments = moments_of(input, frames, body);
   Vector mass(static_cast<Index>(body.nodes.size()));
-  for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[std::size_t(i)]];
   require_span(input, body, moments, mass);
   // The second corrections remove the rounding error of the first.
   if (correct_centre(moments, mass) < 1.0) refuse(input, body, too_few);
@@ -215,7 +215,7 @@ double balance(const MassInput& input, const MassFrames& frames, const MassBody&
                        "{:.2g} % would remain",
                        std::max(100.0 * inertia.least, 0.0)));
   }
-  for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];
+  for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[std::size_t(i)]] = mass[i];
   return inertia.deficit;
 }
 

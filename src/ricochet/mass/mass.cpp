@@ -33,7 +33,7 @@ MassRegistration consistent_mass() {
 
 std::vector<char> MassInput::marked_contact_nodes() const {
   std::vector<char> marks(static_cast<std::size_t>(consistent->cols()), 0);
-  for (const Index node : contact_nodes) marks[static_cast<std::size_t>(node)] = 1;
+  for (const Index node : contact_nodes) marks[std::size_t(node)] = 1;
   return marks;
 }
 
@@ -50,7 +50,7 @@ MassChoice mass_to_build(const std::string& requested, const Parameters& paramet
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {
   std::vector<int> number(static_cast<std::size_t>(mass.cols()), 0);
-  for (const Index node : excluded_nodes) number[static_cast<std::size_t>(node)] = -1;
+  for (const Index node : excluded_nodes) number[std::size_t(node)] = -1;
   int count = 0;
   for (int& n : number) n = n < 0 ? -1 : count++;
   SparseMatrix block = extract(mass, number, count, number, count);

@@ -144,22 +144,22 @@ std::string text_of_point(const Points& nodes, Index node) {
 namespace {
 
 Matrix relative_positions(const Points& nodes, const Vector& centre, const std::vector<Index>& of) {
-  Matrix result(nodes.rows(), static_cast<Index>(of.size()));
-  for (Index k = 0; k < result.cols(); ++k) result.col(k) = nodes.col(of[static_cast<std::size_t>(k)]) - centre;
+  Matrix result(nodes.rows(), Index(of.size()));
+  for (Index k = 0; k < result.cols(); ++k) result.col(k) = nodes.col(of[std::size_t(k)]) - centre;
   return result;
 }
 
 /// Dimension of the affine span of points of a body, in the frame in which the body is equally wide: 0 for one point.
 int span_dimension(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points) {
   Vector centre = Vector::Zero(nodes.rows());
-  for (const Index node : body) centre += nodes.col(node) / static_cast<double>(body.size());
+  for (const Index node : body) centre += nodes.col(node) / double(body.size());
   // X Xᵀ = Rᵀ R: R⁻ᵀ makes the body equally wide without forming squares, which lose half of the digits of flat bodies.
   const Matrix axes = upper_of_qr(relative_positions(nodes, centre, body).transpose());
   Matrix relative = relative_positions(nodes, nodes.col(points.front()), points);
   if (axes.diagonal().cwiseAbs().minCoeff() > 0.0)  // else the body itself lies in a plane
     relative = axes.transpose().triangularView<Eigen::Lower>().solve(relative);
   // The tolerance exceeds the rounding of single-precision coordinates.
-  return static_cast<int>(PivotedQr(relative, 1e-6).rank());
+  return int(PivotedQr(relative, 1e-6).rank());
 }
 
 }  // namespace

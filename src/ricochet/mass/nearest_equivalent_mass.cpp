@@ -26,7 +26,7 @@ SparseMatrix restricted_to_massive_nodes(const MassInput& input) {
   const std::vector<char> is_contact = input.marked_contact_nodes();
   SparseMatrix result = *input.consistent;
   result.prune([&](Index row, Index column, double) {
-    return is_contact[static_cast<std::size_t>(row)] == 0 && is_contact[static_cast<std::size_t>(column)] == 0;
+    return is_contact[std::size_t(row)] == 0 && is_contact[std::size_t(column)] == 0;
   });
   return result;
 }
@@ -63,9 +63,9 @@ std::vector<std::pair<Index, Index>> conditions(Index monomials) {
 void correct(SparseMatrix& mass, const MassFrames& frames, const MassBody& body, const SparseMatrix& consistent) {
   const Matrix& monomials = frames.monomials;
   const auto pairs = conditions(monomials.rows());
-  const auto count = static_cast<Index>(pairs.size());
+  const auto count = Index(pairs.size());
   const auto value = [&](Index condition, Index i, Index j) {
-    const auto [a, b] = pairs[static_cast<std::size_t>(condition)];
+    const auto [a, b] = pairs[std::size_t(condition)];
     return 0.5 * (monomials(a, i) * monomials(b, j) + monomials(b, i) * monomials(a, j));
   };
   Matrix gram = Matrix::Zero(count, count);
@@ -82,7 +82,7 @@ void correct(SparseMatrix& mass, const MassFrames& frames, const MassBody& body,
     const Matrix missing = mass_moments(consistent, frames, body) - mass_moments(mass, frames, body);
     Vector defect(count);
     for (Index k = 0; k < count; ++k) {
-      const auto [a, b] = pairs[static_cast<std::size_t>(k)];
+      const auto [a, b] = pairs[std::size_t(k)];
       defect[k] = missing(a, b);
     }
     const Vector multipliers = factor.solve(defect);

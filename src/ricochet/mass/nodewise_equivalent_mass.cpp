@@ -22,12 +22,11 @@ struct Extrapolation {
 /// Rows of E that differ from the identity, and their columns.
 class ExtensionRows {
  public:
-  explicit ExtensionRows(Index count) : row_(static_cast<std::size_t>(count), -1), column_(row_.size()) {}
+  explicit ExtensionRows(Index count) : row_(std::size_t(count), -1), column_(row_.size()) {}
   void set(Index node, Extrapolation extrapolation) {
-    row_[static_cast<std::size_t>(node)] = static_cast<int>(rows_.size());
+    row_[std::size_t(node)] = int(rows_.size());
     for (std::size_t k = 0; k < extrapolation.nodes.size(); ++k) {
-      column_[static_cast<std::size_t>(extrapolation.nodes[k])].push_back(
-          {node, extrapolation.weights[static_cast<Index>(k)]});
+      column_[std::size_t(extrapolation.nodes[k])].push_back({node, extrapolation.weights[Index(k)]});
     }
     rows_.push_back(std::move(extrapolation));
   }
@@ -36,11 +35,9 @@ class ExtensionRows {
     double weight;
   };
   /// Contact nodes that contribute mass to a massive node.
-  [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[std::size_t(node)]; }
   /// Row of a contact node.
-  [[nodiscard]] const Extrapolation& row(Index node) const {
-    return rows_[static_cast<std::size_t>(row_[static_cast<std::size_t>(node)])];
-  }
+  [[nodiscard]] const Extrapolation& row(Index node) const { return rows_[std::size_t(row_[std::size_t(node)])]; }
 
  private:
   std::vector<int> row_;  ///< per node: its entry in rows_, or −1
@@ -70,10 +67,10 @@ class CongruenceRow {
   /// Returns the columns of the row, ascending; `value` returns its entries until the next call.
   const std::vector<int>& compute(Index node) {
     clear();
-    if (is_contact_[static_cast<std::size_t>(node)] != 0) return columns_;
+    if (is_contact_[std::size_t(node)] != 0) return columns_;
     add_product(node);
     for (const ExtensionRows::Entry& entry : extension_.column(node)) {
-      const SparseRow& row = products_[static_cast<std::size_t>(entry.node)];
+      const SparseRow& row = products_[std::size_t(entry.node)];
       for (std::size_t k = 0; k < row.columns.size(); ++k) add(row.columns[k], entry.weight * row.values[k]);
     }
     std::ranges::sort(columns_);
@@ -93,26 +90,26 @@ class CongruenceRow {
  private:
   void clear() {
     for (const int column : columns_) {
-      present_[static_cast<std::size_t>(column)] = 0;
+      present_[std::size_t(column)] = 0;
       values_[column] = 0.0;
     }
     columns_.clear();
   }
   void add(Index column, double value) {
     values_[column] += value;
-    if (present_[static_cast<std::size_t>(column)] != 0) return;
-    present_[static_cast<std::size_t>(column)] = 1;
-    columns_.push_back(static_cast<int>(column));
+    if (present_[std::size_t(column)] != 0) return;
+    present_[std::size_t(column)] = 1;
+    columns_.push_back(int(column));
   }
   void add_product(Index node) {
     for (SparseMatrix::InnerIterator entry(mass_, node); entry; ++entry) {
-      if (is_contact_[static_cast<std::size_t>(entry.row())] == 0) {
+      if (is_contact_[std::size_t(entry.row())] == 0) {
         add(entry.row(), entry.value());
         continue;
       }
       const Extrapolation& row = extension_.row(entry.row());
       for (std::size_t k = 0; k < row.nodes.size(); ++k) {
-        add(row.nodes[k], entry.value() * row.weights[static_cast<Index>(k)]);
+        add(row.nodes[k], entry.value() * row.weights[Index(k)]);
       }
     }
   }
@@ -135,8 +132,7 @@ void symmetrize(SparseMatrix& matrix) {
     for (Index column = first; column < last; ++column) {
       for (int k = outer[column]; k < outer[column + 1] && inner[k] < column; ++k) {
         // Each pair is visited once, from its larger index.
-        const int* other =
-            std::lower_bound(inner + outer[inner[k]], inner + outer[inner[k] + 1], static_cast<int>(column));
+        const int* other = std::lower_bound(inner + outer[inner[k]], inner + outer[inner[k] + 1], int(column));
         double& transposed = values[other - inner];
         values[k] = transposed = 0.5 * (values[k] + transposed);
       }
@@ -153,12 +149,12 @@ SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_co
   parallel_ranges(count, [&](Index first, Index last) {
     CongruenceRow row(mass, is_contact, extension, products);
     for (Index node = first; node < last; ++node) {
-      if (is_contact[static_cast<std::size_t>(node)] != 0) products[static_cast<std::size_t>(node)] = row.product(node);
+      if (is_contact[std::size_t(node)] != 0) products[std::size_t(node)] = row.product(node);
     }
   });
   parallel_ranges(count, [&](Index first, Index last) {
     CongruenceRow row(mass, is_contact, extension, products);
-    for (Index node = first; node < last; ++node) outer[node + 1] = static_cast<int>(row.compute(node).size());
+    for (Index node = first; node < last; ++node) outer[node + 1] = int(row.compute(node).size());
   });
   for (Index node = 0; node < count; ++node) outer[node + 1] += outer[node];
   result.resizeNonZeros(outer[count]);
@@ -187,15 +183,15 @@ SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_co
 bool extrapolation_weights(const Points& nodes, const Vector& node_weights, const std::vector<int>& of, Index point,
                            Vector& weights) {
   constexpr double largest_distance = 100.0;
-  const int d = static_cast<int>(nodes.rows());
+  const int d = int(nodes.rows());
   AffineFrame frame;
-  if (!make_affine_frame(nodes, of.data(), static_cast<int>(of.size()), node_weights, frame)) return false;
+  if (!make_affine_frame(nodes, of.data(), int(of.size()), node_weights, frame)) return false;
   double to[4] = {1.0}, weight[4];
   affine_coordinates(frame, d, nodes.col(point).data(), to + 1);
-  weights.setZero(static_cast<Index>(of.size()));
+  weights.setZero(Index(of.size()));
   for (std::size_t j = 0; j < of.size(); ++j) {
     affine_weight(frame, d, nodes.col(of[j]).data(), node_weights[of[j]], weight);
-    for (int k = 0; k <= d; ++k) weights[static_cast<Index>(j)] += weight[k] * to[k];
+    for (int k = 0; k <= d; ++k) weights[Index(j)] += weight[k] * to[k];
   }
   const double square = to[1] * to[1] + to[2] * to[2] + to[3] * to[3];
   return square <= largest_distance * largest_distance;
@@ -228,7 +224,7 @@ Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_co
   rings.start(node);
   for (bool grows = true; grows;) {
     grows = rings.grow([&](Index neighbour) {
-      if (is_contact[static_cast<std::size_t>(neighbour)] == 0) massive.push_back(static_cast<int>(neighbour));
+      if (is_contact[std::size_t(neighbour)] == 0) massive.push_back(int(neighbour));
     });
     const bool enough = massive.size() >= required_neighbours || !grows;
     if (enough && extrapolation_weights(*input.nodes, diagonal, massive, node, result.weights)) {

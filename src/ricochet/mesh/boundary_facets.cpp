@@ -52,13 +52,12 @@ void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& v
   }
   // Buckets by the smallest vertex: a table of all keys would need several times the memory.
   std::vector<std::size_t> start(static_cast<std::size_t>(nodes) + 1, 0);
-  for_each_facet(
-      cells, [&](const CellFacet&, const Key& key) { ++start[static_cast<std::size_t>(smallest_vertex(key)) + 1]; });
+  for_each_facet(cells, [&](const CellFacet&, const Key& key) { ++start[std::size_t(smallest_vertex(key)) + 1]; });
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<CellFacet> sorted(start.back());
   std::vector<std::size_t> next(start.begin(), start.end() - 1);
   for_each_facet(cells, [&](const CellFacet& facet, const Key& key) {
-    sorted[next[static_cast<std::size_t>(smallest_vertex(key))]++] = facet;
+    sorted[next[std::size_t(smallest_vertex(key))]++] = facet;
   });
 
   using Entry = std::pair<Key, CellFacet>;

@@ -99,14 +99,14 @@ bool has_groups(const RawMesh& raw) {
 
 /// Checks that a mesh of dimension 2 lies in a plane z = constant.
 void check_plane(const RawMesh& raw, const std::vector<Index>& used, const std::string& source) {
-  Eigen::Map<const Eigen::Matrix3Xd> all(raw.coordinates.data(), 3, static_cast<Index>(raw.node_tags.size()));
+  Eigen::Map<const Eigen::Matrix3Xd> all(raw.coordinates.data(), 3, Index(raw.node_tags.size()));
   const Eigen::Matrix3Xd positions = all(Eigen::all, used);
   const double size = (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).maxCoeff();
   const double first = positions(2, 0);
   Offenders out_of_plane;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const bool in_plane = std::abs(positions(2, static_cast<Index>(i)) - first) <= 1e-12 * size;
-    if (!in_plane) out_of_plane.add(raw.node_tags[static_cast<std::size_t>(used[i])]);
+    const bool in_plane = std::abs(positions(2, Index(i)) - first) <= 1e-12 * size;
+    if (!in_plane) out_of_plane.add(raw.node_tags[std::size_t(used[i])]);
   }
   if (out_of_plane.any()) {
     fail_mesh(
@@ -114,7 +114,7 @@ void check_plane(const RawMesh& raw, const std::vector<Index>& used, const std::
         fmt::format("a mesh of surfaces must lie in a plane z = constant, but z differs from that of node {} at {} "
                     "(shells are not supported; if this should be a solid, its volume is not meshed or not in a "
                     "physical group)",
-                    raw.node_tags[static_cast<std::size_t>(used[0])], out_of_plane.text("node")));
+                    raw.node_tags[std::size_t(used[0])], out_of_plane.text("node")));
   }
 }
 
@@ -130,16 +130,16 @@ NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::stri
   if (not_positive.any())
     fail_mesh(source, fmt::format("node numbers must be positive; found {}", not_positive.text("node")));
   Offenders repeated;
-  if (largest / 4 <= static_cast<std::int64_t>(tags.size())) {
-    dense_.assign(static_cast<std::size_t>(largest) + 1, -1);
+  if (largest / 4 <= std::int64_t(tags.size())) {
+    dense_.assign(std::size_t(largest) + 1, -1);
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      Index& index = dense_[static_cast<std::size_t>(tags[i])];
+      Index& index = dense_[std::size_t(tags[i])];
       if (index >= 0) repeated.add(tags[i]);
-      index = static_cast<Index>(i);
+      index = Index(i);
     }
   } else {
     sorted_.reserve(tags.size());
-    for (std::size_t i = 0; i < tags.size(); ++i) sorted_.emplace_back(tags[i], static_cast<Index>(i));
+    for (std::size_t i = 0; i < tags.size(); ++i) sorted_.emplace_back(tags[i], Index(i));
     std::ranges::sort(sorted_);
     for (std::size_t i = 1; i < sorted_.size(); ++i) {
       if (sorted_[i].first == sorted_[i - 1].first) repeated.add(sorted_[i].first);
@@ -156,13 +156,13 @@ Index NodeNumbering::find_sorted(std::int64_t tag) const {
 void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh) {
   std::vector<Index> new_number(raw.node_tags.size(), -1);
   for (const CellBlock& block : mesh.cells) {
-    for (const Index node : block.nodes) new_number[static_cast<std::size_t>(node)] = 0;
+    for (const Index node : block.nodes) new_number[std::size_t(node)] = 0;
   }
   std::vector<Index> used;
   for (std::size_t i = 0; i < new_number.size(); ++i) {
     if (new_number[i] < 0) continue;
-    new_number[i] = static_cast<Index>(used.size());
-    used.push_back(static_cast<Index>(i));
+    new_number[i] = Index(used.size());
+    used.push_back(Index(i));
   }
   if (mesh.dimension == 2) check_plane(raw, used, mesh.source);
   if (const std::size_t dropped = raw.node_tags.size() - used.size(); dropped > 0) {
@@ -170,16 +170,16 @@ void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh) {
   }
   for (auto* blocks : {&mesh.cells, &mesh.facets}) {
     for (CellBlock& block : *blocks) {
-      for (Index& node : block.nodes) node = new_number[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = new_number[std::size_t(node)];
     }
   }
-  mesh.nodes.resize(mesh.dimension, static_cast<Index>(used.size()));
+  mesh.nodes.resize(mesh.dimension, Index(used.size()));
   mesh.node_tags.resize(used.size());
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const auto old = static_cast<std::size_t>(used[i]);
+    const auto old = std::size_t(used[i]);
     mesh.node_tags[i] = raw.node_tags[old];
     for (int axis = 0; axis < mesh.dimension; ++axis) {
-      mesh.nodes(axis, static_cast<Index>(i)) = scale * raw.coordinates[3 * old + static_cast<std::size_t>(axis)];
+      mesh.nodes(axis, Index(i)) = scale * raw.coordinates[3 * old + std::size_t(axis)];
     }
   }
   if (!mesh.nodes.allFinite())

@@ -43,8 +43,7 @@ class NodeNumbering {
   NodeNumbering(std::span<const std::int64_t> tags, const std::string& source);
   /// Returns −1 if there is no such node.
   [[nodiscard]] Index find(std::int64_t tag) const {
-    if (!dense_.empty())
-      return tag >= 0 && tag < static_cast<Index>(dense_.size()) ? dense_[static_cast<std::size_t>(tag)] : -1;
+    if (!dense_.empty()) return tag >= 0 && tag < Index(dense_.size()) ? dense_[std::size_t(tag)] : -1;
     return find_sorted(tag);
   }
 

@@ -25,7 +25,7 @@ class FacetFinder {
         matches_(facets.tags.size(), Match::none) {
     for (Index i = 0; i < facets.size(); ++i) {
       table_.find_or_add(facets.cell(i));
-      for (int k = 0; k < vertex_count_; ++k) marked_[static_cast<std::size_t>(facets.cell(i)[k])] = 1;
+      for (int k = 0; k < vertex_count_; ++k) marked_[std::size_t(facets.cell(i)[k])] = 1;
     }
   }
 
@@ -51,7 +51,7 @@ class FacetFinder {
   // table.
   bool candidate(const Index* cell, const std::vector<int>& local) const {
     for (int k = 0; k < vertex_count_; ++k) {
-      if (marked_[static_cast<std::size_t>(cell[local[static_cast<std::size_t>(k)]])] == 0) return false;
+      if (marked_[std::size_t(cell[local[std::size_t(k)]])] == 0) return false;
     }
     return true;
   }
@@ -60,7 +60,7 @@ class FacetFinder {
     const Index found = table_.find(nodes.data());
     if (found < 0) return;
     const bool all = std::is_permutation(nodes.begin(), nodes.end(), facets_.cell(found));
-    Match& match = matches_[static_cast<std::size_t>(found)];
+    Match& match = matches_[std::size_t(found)];
     match = std::max(match, all ? Match::all_nodes : Match::vertices);
   }
 
@@ -79,7 +79,7 @@ std::size_t count_nodes(const Mesh& mesh) {
       for (const Index node : block.nodes) largest = std::max(largest, node);
     }
   }
-  return static_cast<std::size_t>(largest + 1);
+  return std::size_t(largest + 1);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void check_facets(const Mesh& mesh) {
     Offenders alone;
     Offenders other_nodes;
     for (const Index member : group.members) {
-      const auto i = static_cast<std::size_t>(member);
+      const auto i = std::size_t(member);
       if (matches[i] == Match::none) alone.add(tags[i]);
       if (matches[i] == Match::vertices) other_nodes.add(tags[i]);
     }

@@ -29,9 +29,9 @@ std::vector<Matrix> gradients_at_nodes(CellShape shape, int degree) {
   const auto& nodes = node_vertices(shape, degree);
   std::vector<Matrix> result;
   for (const std::vector<int>& point : nodes) {
-    Matrix& gradients = result.emplace_back(dimension(shape), static_cast<Index>(nodes.size()));
+    Matrix& gradients = result.emplace_back(dimension(shape), Index(nodes.size()));
     for (Index k = 0; k < gradients.cols(); ++k) {
-      const Eigen::Vector3d node = reference_position(shape, nodes[static_cast<std::size_t>(k)]);
+      const Eigen::Vector3d node = reference_position(shape, nodes[std::size_t(k)]);
       const LagrangeValue function = describe(shape).lagrange(degree, node, reference_position(shape, point));
       gradients.col(k) = function.gradient.head(dimension(shape));
     }
@@ -74,8 +74,7 @@ Orientation orientation(const Points& points, const Index* cell, const std::vect
 
 void reverse_orientation(Index* cell, const std::vector<int>& mirrored, std::vector<Index>& nodes) {
   nodes.assign(cell, cell + mirrored.size());
-  for (std::size_t node = 0; node < mirrored.size(); ++node)
-    cell[node] = nodes[static_cast<std::size_t>(mirrored[node])];
+  for (std::size_t node = 0; node < mirrored.size(); ++node) cell[node] = nodes[std::size_t(mirrored[node])];
 }
 
 /// Centre of a facet's vertices, as text.
@@ -84,7 +83,7 @@ std::string facet_centre_text(const Mesh& mesh, const CellFacet& facet) {
   const std::vector<int>& vertices = outward_facet_vertices(block.shape)[facet.local];
   Vector middle = Vector::Zero(mesh.dimension);
   for (const int vertex : vertices) middle += mesh.nodes.col(block.cell(facet.cell)[vertex]);
-  middle /= static_cast<double>(vertices.size());
+  middle /= double(vertices.size());
   return fmt::format("({:.6g})", fmt::join(middle.begin(), middle.end(), ", "));
 }
 
@@ -93,9 +92,7 @@ std::string facet_centre_text(const Mesh& mesh, const CellFacet& facet) {
 void check_folds(const Mesh& mesh) {
   const std::vector<SharedFacet> found = folded_facets(mesh.cells);
   if (found.empty()) return;
-  const auto tag = [&](const CellFacet& facet) {
-    return mesh.cells[facet.block].tags[static_cast<std::size_t>(facet.cell)];
-  };
+  const auto tag = [&](const CellFacet& facet) { return mesh.cells[facet.block].tags[std::size_t(facet.cell)]; };
   constexpr std::size_t most = 5;
   std::string pairs;
   for (std::size_t i = 0; i < std::min(found.size(), most); ++i) {
@@ -120,7 +117,7 @@ void orient_cells_of_dimension(Mesh& mesh) {
     const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
     for (Index i = 0; i < block.size(); ++i) {
       const Orientation found = orientation<Dimension>(mesh.nodes, block.cell(i), gradients);
-      const std::int64_t tag = block.tags[static_cast<std::size_t>(i)];
+      const std::int64_t tag = block.tags[std::size_t(i)];
       if (found.flat) {
         flat.add(tag);
       } else if (found.negative && found.positive) {
@@ -159,7 +156,7 @@ Offenders cells_not_positive(const Mesh& mesh) {
     const std::vector<Matrix> gradients = gradients_at_nodes(block.shape, mesh.degree);
     for (Index i = 0; i < block.size(); ++i) {
       const Orientation found = orientation<Dimension>(mesh.nodes, block.cell(i), gradients);
-      if (found.flat || found.negative) result.add(block.tags[static_cast<std::size_t>(i)]);
+      if (found.flat || found.negative) result.add(block.tags[std::size_t(i)]);
     }
   }
   return result;
@@ -172,8 +169,8 @@ class NodeGrid {
       : nodes_(nodes),
         origin_(nodes.rowwise().minCoeff()),
         tolerance_(coincidence_tolerance * (nodes.rowwise().maxCoeff() - origin_).maxCoeff()),
-        heads_(std::bit_ceil(static_cast<std::size_t>(nodes.cols()) + 1), -1),
-        next_(static_cast<std::size_t>(nodes.cols()), -1) {}
+        heads_(std::bit_ceil(std::size_t(nodes.cols()) + 1), -1),
+        next_(std::size_t(nodes.cols()), -1) {}
 
   /// Returns a previously entered node at the same position, or −1; then enters the node.
   Index find_and_enter(Index node) {
@@ -181,7 +178,7 @@ class NodeGrid {
     Box high{};
     Box own{};
     for (Index axis = 0; axis < nodes_.rows(); ++axis) {
-      const auto k = static_cast<std::size_t>(axis);
+      const auto k = std::size_t(axis);
       const double distance = nodes_(axis, node) - origin_(axis);
       low[k] = box(distance - tolerance_);
       high[k] = box(distance + tolerance_);
@@ -195,7 +192,7 @@ class NodeGrid {
       }
     }
     Index& head = heads_[bucket(own)];
-    next_[static_cast<std::size_t>(node)] = head;
+    next_[std::size_t(node)] = head;
     head = node;
     return found;
   }
@@ -205,15 +202,15 @@ class NodeGrid {
   static constexpr double tolerances_per_box = 16.0;
 
   std::int64_t box(double distance) const {
-    return static_cast<std::int64_t>(std::floor(distance / (tolerances_per_box * tolerance_) + 0.381966));
+    return std::int64_t(std::floor(distance / (tolerances_per_box * tolerance_) + 0.381966));
   }
   std::size_t bucket(const Box& box) const {
     std::uint64_t hash = 0;
-    for (const std::int64_t k : box) hash = (std::rotl(hash, 29) ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15u;
-    return static_cast<std::size_t>(hash ^ (hash >> 32)) & (heads_.size() - 1);
+    for (const std::int64_t k : box) hash = (std::rotl(hash, 29) ^ std::uint64_t(k)) * 0x9e3779b97f4a7c15u;
+    return std::size_t(hash ^ (hash >> 32)) & (heads_.size() - 1);
   }
   Index search(Index node, const Box& box) const {
-    for (Index other = heads_[bucket(box)]; other >= 0; other = next_[static_cast<std::size_t>(other)]) {
+    for (Index other = heads_[bucket(box)]; other >= 0; other = next_[std::size_t(other)]) {
       if ((nodes_.col(node) - nodes_.col(other)).norm() <= tolerance_) return other;
     }
     return -1;
@@ -260,8 +257,8 @@ void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {
     if (other < 0) continue;
     if (bodies_may_touch && bodies.root(node) != bodies.root(other)) continue;
     if (++count > 5) continue;
-    pairs += fmt::format("{}{} and {}", count == 1 ? "" : ", ", mesh.node_tags[static_cast<std::size_t>(other)],
-                         mesh.node_tags[static_cast<std::size_t>(node)]);
+    pairs += fmt::format("{}{} and {}", count == 1 ? "" : ", ", mesh.node_tags[std::size_t(other)],
+                         mesh.node_tags[std::size_t(node)]);
   }
   if (count == 0) return;
   fail_mesh(

@@ -36,8 +36,8 @@ std::vector<std::vector<Cone>> cones_at_vertices(CellShape shape, int degree) {
   for (const std::vector<int>& ends : node_vertices(shape, 2)) {
     if (ends.size() != 2) continue;
     const int middle = degree == 2 ? node_at_mean(shape, ends) : -1;
-    edges[static_cast<std::size_t>(ends[0])].push_back({ends[0], ends[1], middle});
-    edges[static_cast<std::size_t>(ends[1])].push_back({ends[1], ends[0], middle});
+    edges[std::size_t(ends[0])].push_back({ends[0], ends[1], middle});
+    edges[std::size_t(ends[1])].push_back({ends[1], ends[0], middle});
   }
   if (dimension(shape) == 2) {
     for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) result[vertex].push_back(edges[vertex]);
@@ -45,12 +45,12 @@ std::vector<std::vector<Cone>> cones_at_vertices(CellShape shape, int degree) {
   }
   for (const std::vector<int>& facet : facet_nodes(shape, 1)) {
     for (const int vertex : facet) {
-      const Cone& all = edges[static_cast<std::size_t>(vertex)];
+      const Cone& all = edges[std::size_t(vertex)];
       Cone cone{all.front()};
       std::ranges::copy_if(all, std::back_inserter(cone),
                            [&facet](const Edge& edge) { return std::ranges::find(facet, edge.end) != facet.end(); });
       const bool has_first = cone.size() > 1 && cone[1].end == cone[0].end;
-      if (!has_first) result[static_cast<std::size_t>(vertex)].push_back(std::move(cone));
+      if (!has_first) result[std::size_t(vertex)].push_back(std::move(cone));
     }
   }
   return result;
@@ -87,7 +87,7 @@ std::vector<double> sums_of_angles(const Mesh& mesh) {
       for (std::size_t vertex = 0; vertex < cones.size(); ++vertex) {
         for (const Cone& cone : cones[vertex]) {
           const Eigen::Vector3d a = direction(mesh, cell, cone[0]), b = direction(mesh, cell, cone[1]);
-          sums[static_cast<std::size_t>(cell[vertex])] +=
+          sums[std::size_t(cell[vertex])] +=
               mesh.dimension == 2 ? angle(a, b) : solid_angle(a, b, direction(mesh, cell, cone[2]));
         }
       }
@@ -108,7 +108,7 @@ void warn_of_overlaps(const Mesh& mesh) {
     if (count == 1 || sums[node] > sums[worst]) worst = node;
   }
   if (count == 0) return;
-  const auto position = mesh.nodes.col(static_cast<Index>(worst));
+  const auto position = mesh.nodes.col(Index(worst));
   log::warning(fmt::format(
       "{}: cells overlap: around node {} at ({:.6g}) they fill {:.3g} times the full angle{}; the mass and the "
       "stiffness of the body are counted twice there: remesh the part",

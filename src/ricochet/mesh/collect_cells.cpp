@@ -59,7 +59,7 @@ class BlockCollector {
     const std::int64_t* tags = elements.nodes.data() + element * order_.size();
     bool complete = true;
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      Index& node = nodes[static_cast<std::size_t>(order_[i])];
+      Index& node = nodes[std::size_t(order_[i])];
       node = numbering_.find(tags[i]);
       if (node >= 0) continue;
       unknown_nodes_.add(tags[i]);
@@ -79,7 +79,7 @@ class BlockCollector {
     }
     // Gmsh's format 2.2 repeats an element for each group it is in. Any other repetition means two cells at one
     // position.
-    const bool once_per_group = in_group && in_group_[static_cast<std::size_t>(existing)];
+    const bool once_per_group = in_group && in_group_[std::size_t(existing)];
     if (!once_per_group || !same_nodes(block_.cell(existing), nodes.data(), block_.nodes_per_cell)) repeated_.add(tag);
     return existing;
   }
@@ -96,7 +96,7 @@ class BlockCollector {
 
 std::int64_t tag_of(const std::vector<CellBlock>& blocks, Index number) {
   for (const CellBlock& block : blocks) {
-    if (number < block.size()) return block.tags[static_cast<std::size_t>(number)];
+    if (number < block.size()) return block.tags[std::size_t(number)];
     number -= block.size();
   }
   return 0;

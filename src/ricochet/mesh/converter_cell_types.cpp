@@ -11,7 +11,7 @@ namespace {
 
 std::vector<int> inverse_of(const std::vector<int>& order) {
   std::vector<int> result(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) result[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < order.size(); ++i) result[std::size_t(order[i])] = int(i);
   return result;
 }
 
@@ -20,12 +20,12 @@ std::vector<int> nodes_of_facet_in_file(CellShape shape, CellShape own, int degr
   const std::vector<int> in_file = inverse_of(meshio_nodes(shape, degree)), corner = inverse_of(meshio_nodes(own, 1));
   std::vector<int> result;
   for (const int node : meshio_nodes(own, degree)) {
-    VertexSet vertices = node_vertices(own, degree)[static_cast<std::size_t>(node)];
+    VertexSet vertices = node_vertices(own, degree)[std::size_t(node)];
     for (int& vertex : vertices) {
-      const int of_cell = facet[static_cast<std::size_t>(corner[static_cast<std::size_t>(vertex)])];
-      vertex = describe(shape).file_vertices[static_cast<std::size_t>(of_cell)];
+      const int of_cell = facet[std::size_t(corner[std::size_t(vertex)])];
+      vertex = describe(shape).file_vertices[std::size_t(of_cell)];
     }
-    result.push_back(in_file[static_cast<std::size_t>(node_at_mean(shape, vertices))]);
+    result.push_back(in_file[std::size_t(node_at_mean(shape, vertices))]);
   }
   return result;
 }
@@ -34,12 +34,12 @@ Json type_of(CellShape shape, int degree) {
   const CellShapeDescription& cell = describe(shape);
   std::vector<int> order;
   for (const int node : gmsh_nodes(shape, degree))
-    order.push_back(inverse_of(meshio_nodes(shape, degree))[static_cast<std::size_t>(node)]);
+    order.push_back(inverse_of(meshio_nodes(shape, degree))[std::size_t(node)]);
   Json facets = Json::array();
   for (const VertexSet& facet : cell.abaqus_facets) {
     const auto same_size = [&](const VertexSet& each) { return each.size() == facet.size(); };
     const auto like = std::ranges::find_if(cell.facets, same_size) - cell.facets.begin();
-    const CellShape own = facet_shape(shape, static_cast<std::size_t>(like));
+    const CellShape own = facet_shape(shape, std::size_t(like));
     facets.push_back(Json{{"kind", file_type(own, degree).meshio_name},
                           {"nodes", nodes_of_facet_in_file(shape, own, degree, facet)}});
   }

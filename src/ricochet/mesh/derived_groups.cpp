@@ -32,7 +32,7 @@ std::vector<Index> numbers_up_to(Index count) {
 std::size_t block_of(Mesh& mesh, CellShape shape) {
   const auto found =
       std::ranges::find_if(mesh.facets, [shape](const CellBlock& block) { return block.shape >= shape; });
-  const auto index = static_cast<std::size_t>(found - mesh.facets.begin());
+  const auto index = std::size_t(found - mesh.facets.begin());
   if (found == mesh.facets.end() || found->shape != shape)
     mesh.facets.insert(found, CellBlock{shape, node_count(shape, mesh.degree), {}, {}});
   return index;
@@ -51,11 +51,11 @@ std::vector<Index> add_facets(const Mesh& mesh, const std::vector<CellFacet>& fa
   std::vector<Index> members;
   for (const CellFacet& facet : facets) {
     const std::vector<Index> nodes = nodes_of_facet(mesh.cells, facet);
-    const auto size = static_cast<std::ptrdiff_t>(block.nodes.size());
+    const auto size = std::ptrdiff_t(block.nodes.size());
     block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
     const Index existing = table.find_or_add(block.nodes.data() + size);
     if (existing >= 0) {
-      block.nodes.resize(static_cast<std::size_t>(size));
+      block.nodes.resize(std::size_t(size));
       members.push_back(existing);
     } else {
       members.push_back(block.size());
@@ -71,7 +71,7 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   for (Group& group : mesh.groups) {
     if (group.dimension != dimension) continue;
     for (Index& member : group.members) {
-      const auto block = static_cast<std::size_t>(std::ranges::upper_bound(before, member) - before.begin()) - 1;
+      const auto block = std::size_t(std::ranges::upper_bound(before, member) - before.begin()) - 1;
       member += after[block] - before[block];
     }
   }
@@ -134,9 +134,8 @@ void add_built_in_group(Mesh& mesh, const std::string& name, int dimension) {
 
 void add_boundary_of_cells(Mesh& mesh, const std::string& name, const std::vector<char>& cells) {
   const std::vector<Index> first = first_numbers(mesh.cells);
-  add_boundary(mesh, name, [&](const CellFacet& facet) {
-    return cells[static_cast<std::size_t>(first[facet.block] + facet.cell)] != 0;
-  });
+  add_boundary(mesh, name,
+               [&](const CellFacet& facet) { return cells[std::size_t(first[facet.block] + facet.cell)] != 0; });
 }
 
 void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<std::string>& parts, int dimension) {

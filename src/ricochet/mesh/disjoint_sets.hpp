@@ -13,18 +13,18 @@ namespace ricochet {
 /// represents it.
 class DisjointSets {
  public:
-  explicit DisjointSets(Index count) : parent_(static_cast<std::size_t>(count)) {
+  explicit DisjointSets(Index count) : parent_(std::size_t(count)) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
   /// Returns the representative of a number's set, halving paths on the way.
   [[nodiscard]] Index root(Index number) {
-    const auto parent = [this](Index i) -> Index& { return parent_[static_cast<std::size_t>(i)]; };
+    const auto parent = [this](Index i) -> Index& { return parent_[std::size_t(i)]; };
     while (parent(number) != number) number = parent(number) = parent(parent(number));
     return number;
   }
   void join(Index one, Index other) {
     const Index a = root(one), b = root(other);
-    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    parent_[std::size_t(std::max(a, b))] = std::min(a, b);
   }
 
  private:

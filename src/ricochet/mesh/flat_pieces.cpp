@@ -33,7 +33,7 @@ void orient_piece(CellShape shape, VertexSets& corners) {
   const auto at = [&](const VertexSet& corner) { return reference_position(shape, corner); };
   const int d = dimension(shape);
   Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
-  for (int k = 0; k < d; ++k) edges.col(k) = at(corners[static_cast<std::size_t>(k) + 1]) - at(corners[0]);
+  for (int k = 0; k < d; ++k) edges.col(k) = at(corners[std::size_t(k) + 1]) - at(corners[0]);
   if (edges.determinant() < 0.0) std::swap(corners[corners.size() - 2], corners.back());
   if (d != 2) return;
   const auto is_lower = [&](const VertexSet& one, const VertexSet& other) {
@@ -48,7 +48,7 @@ std::vector<FlatPiece> make_pieces(CellShape shape, int degree) {
   for (const Child& part : parts_of_cell(shape, degree)) {
     for (const VertexSet& simplex : describe(part.shape).simplices) {
       VertexSets corners;
-      for (const int vertex : simplex) corners.push_back(part.vertices[static_cast<std::size_t>(vertex)]);
+      for (const int vertex : simplex) corners.push_back(part.vertices[std::size_t(vertex)]);
       orient_piece(shape, corners);
       FlatPiece& piece = result.emplace_back(FlatPiece{-1, -1, -1, -1});
       for (std::size_t k = 0; k < corners.size(); ++k)

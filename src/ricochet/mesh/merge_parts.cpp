@@ -38,7 +38,7 @@ std::int64_t largest_tag(const Mesh& mesh) {
 std::int64_t tag_step(const std::vector<NamedMesh>& parts) {
   std::int64_t largest = 0;
   for (const NamedMesh& part : parts) largest = std::max(largest, largest_tag(part.mesh));
-  const std::int64_t most = std::numeric_limits<std::int64_t>::max() / 10 / static_cast<std::int64_t>(parts.size());
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max() / 10 / std::int64_t(parts.size());
   std::int64_t step = 1'000'000;
   while (step <= largest && step <= most) step *= 10;
   if (step <= largest) {
@@ -85,7 +85,7 @@ class BlockMerger {
  private:
   [[nodiscard]] std::size_t block_of(CellShape shape) const {
     const auto found = std::ranges::find_if(merged_, [shape](const CellBlock& block) { return block.shape == shape; });
-    return static_cast<std::size_t>(found - merged_.begin());
+    return std::size_t(found - merged_.begin());
   }
 
   void number_all() {
@@ -112,7 +112,7 @@ void add_groups(const NamedMesh& part, const BlockMerger& cells, const BlockMerg
   for (const Group& group : part.mesh.groups) {
     const auto same =
         std::ranges::count_if(mesh.groups, [&](const Group& other) { return other.dimension == group.dimension; });
-    Group merged{mesh.parts.back().group_name(group.name), static_cast<int>(same) + 1, group.dimension, {}};
+    Group merged{mesh.parts.back().group_name(group.name), int(same) + 1, group.dimension, {}};
     const BlockMerger& numbers = group.dimension == mesh.dimension ? cells : facets;
     for (const Index member : group.members) merged.members.push_back(numbers.number(number, member));
     std::ranges::sort(merged.members);
@@ -130,7 +130,7 @@ std::vector<Index> cells_of(const NamedMesh& part, const BlockMerger& cells, std
 void note_numbers(const std::vector<NamedMesh>& parts, std::int64_t step) {
   for (std::size_t i = 1; i < parts.size(); ++i)
     log::info(fmt::format("part \"{}\": the numbers of its nodes and elements are those in the file plus {}",
-                          parts[i].name, step * static_cast<std::int64_t>(i)));
+                          parts[i].name, step * std::int64_t(i)));
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ Mesh merge_parts(const std::vector<NamedMesh>& parts) {
   nodes = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Mesh& part = parts[i].mesh;
-    const std::int64_t more = step * static_cast<std::int64_t>(i);
+    const std::int64_t more = step * std::int64_t(i);
     mesh.nodes.middleCols(nodes, part.node_count()) = part.nodes;
     for (const std::int64_t tag : part.node_tags) mesh.node_tags.push_back(tag + more);
     cells.append(i, nodes, more);

@@ -99,10 +99,10 @@ CellLocation location_of_cell(const Mesh& mesh, Index cell) {
       cell -= block.size();
       continue;
     }
-    CellLocation result{Vector::Zero(mesh.dimension), block.tags[static_cast<std::size_t>(cell)]};
+    CellLocation result{Vector::Zero(mesh.dimension), block.tags[std::size_t(cell)]};
     const int vertices = vertex_count(block.shape);
     for (int k = 0; k < vertices; ++k) result.centre += mesh.nodes.col(block.cell(cell)[k]);
-    result.centre /= static_cast<double>(vertices);
+    result.centre /= double(vertices);
     return result;
   }
   return {};

@@ -17,7 +17,7 @@ struct CellBlock {
   std::vector<Index> nodes;        ///< count × nodes_per_cell, row by row, in Basix's order
   std::vector<std::int64_t> tags;  ///< the element's number in the file, for messages
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(tags.size()); }
+  [[nodiscard]] Index size() const { return Index(tags.size()); }
   [[nodiscard]] const Index* cell(Index i) const { return nodes.data() + i * nodes_per_cell; }
 };
 
@@ -38,7 +38,7 @@ void each_cell(const std::vector<CellBlock>& blocks, const Visit& visit) {
   Index number = 0;
   for (const CellBlock& block : blocks) {
     for (Index i = 0; i < block.size(); ++i, ++number)
-      visit(number, std::span<const Index>(block.cell(i), static_cast<std::size_t>(block.nodes_per_cell)));
+      visit(number, std::span<const Index>(block.cell(i), std::size_t(block.nodes_per_cell)));
   }
 }
 

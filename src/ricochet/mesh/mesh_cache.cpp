@@ -171,7 +171,7 @@ std::string fnv1a_128(std::string_view content) {
   const Unsigned128 prime = (static_cast<Unsigned128>(1) << 88) + 0x13b;
   Unsigned128 hash = (static_cast<Unsigned128>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
   for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
-  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
+  return fmt::format("{:016x}{:016x}", std::uint64_t(hash >> 64), std::uint64_t(hash));
 }
 
 bool is_cad_file(const std::string& path) {
@@ -181,7 +181,7 @@ bool is_cad_file(const std::string& path) {
 
 std::string extension_of(const std::string& path) {
   std::string text = fs::path(path).extension().string();
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 

@@ -33,7 +33,7 @@ std::string_view Cursor::line() {
   const char* stop = std::find(start, end_, '\n');
   position_ = stop == end_ ? end_ : stop + 1;
   if (stop != start && *(stop - 1) == '\r') --stop;
-  return {start, static_cast<std::size_t>(stop - start)};
+  return {start, std::size_t(stop - start)};
 }
 
 void Cursor::fail(const std::string& message) const {
@@ -84,15 +84,15 @@ double TextReader::number(const char* what) {
 std::size_t TextReader::count(const char* what, std::size_t text_bytes_each, std::size_t /*binary_bytes_each*/) {
   const std::int64_t value = integer64(what);
   if (value < 0) cursor_.fail(fmt::format("{} is negative ({})", what, value));
-  check_room(cursor_, static_cast<std::uint64_t>(value), text_bytes_each, what);
-  return static_cast<std::size_t>(value);
+  check_room(cursor_, std::uint64_t(value), text_bytes_each, what);
+  return std::size_t(value);
 }
 
 int TextReader::narrow(std::int64_t value, const char* what) const {
   if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
     cursor_.fail(fmt::format("{} is {}, which is out of range", what, value));
   }
-  return static_cast<int>(value);
+  return int(value);
 }
 
 void TextReader::fail_token(const char* what, const char* kind) const {
@@ -106,7 +106,7 @@ void TextReader::fail_token(const char* what, const char* kind) const {
 std::size_t BinaryReader::count(const char* what, std::size_t /*text_bytes_each*/, std::size_t binary_bytes_each) {
   const auto value = read<std::uint64_t>(what);
   check_room(cursor_, value, binary_bytes_each, what);
-  return static_cast<std::size_t>(value);
+  return std::size_t(value);
 }
 
 void BinaryReader::fail_end(const char* what) const {

@@ -24,7 +24,7 @@ class Cursor {
   const char* position() const { return position_; }
   const char* end() const { return end_; }
   void move_to(const char* position) { position_ = position; }
-  std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
+  std::size_t remaining() const { return std::size_t(end_ - position_); }
   std::string_view rest() const { return {position_, remaining()}; }
   bool binary() const { return binary_; }
   void set_binary() { binary_ = true; }
@@ -124,9 +124,9 @@ inline std::int64_t TextReader::integer64(const char* what) {
 
 inline std::int64_t BinaryReader::tag(const char* what) {
   const auto value = read<std::uint64_t>(what);
-  constexpr auto largest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  constexpr auto largest = std::uint64_t(std::numeric_limits<std::int64_t>::max());
   // Out of range is invalid; −1 is refused, with a message that names the tag, when nodes and elements are numbered.
-  return value > largest ? -1 : static_cast<std::int64_t>(value);
+  return value > largest ? -1 : std::int64_t(value);
 }
 
 }  // namespace ricochet::gmsh

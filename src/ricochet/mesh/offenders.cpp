@@ -8,7 +8,7 @@ namespace ricochet {
 
 std::string Offenders::text(const std::string& singular) const {
   if (count_ == 1) return fmt::format("{} {}", singular, first_.front());
-  const std::string more = count_ > static_cast<std::int64_t>(first_.size()) ? ", …" : "";
+  const std::string more = count_ > std::int64_t(first_.size()) ? ", …" : "";
   return fmt::format("{} {}s ({}{})", count_, singular, fmt::join(first_, ", "), more);
 }
 

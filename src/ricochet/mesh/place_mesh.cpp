@@ -18,7 +18,7 @@ struct CosineAndSine {
 CosineAndSine of_degrees(double degrees) {
   const double rest = std::remainder(degrees, 90.0);
   const double c = std::cos(rest * std::numbers::pi / 180.0), s = std::sin(rest * std::numbers::pi / 180.0);
-  const int quarter = static_cast<int>(std::fmod(std::round((degrees - rest) / 90.0), 4.0));
+  const int quarter = int(std::fmod(std::round((degrees - rest) / 90.0), 4.0));
   switch ((quarter + 4) % 4) {
     case 1:
       return {-s, c};
@@ -32,7 +32,7 @@ CosineAndSine of_degrees(double degrees) {
 }
 
 Eigen::Map<const Vector> vector_of(const std::vector<double>& values) {
-  return {values.data(), static_cast<Index>(values.size())};
+  return {values.data(), Index(values.size())};
 }
 
 Matrix rotation_matrix(const MeshRotation& rotation, int dimension) {

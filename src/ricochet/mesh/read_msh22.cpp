@@ -47,7 +47,7 @@ class Blocks {
     if (group != 0) block.groups.push_back(std::abs(group));
   }
 
-  static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+  static constexpr std::size_t nowhere = std::size_t(-1);
   std::vector<RawElements>& elements_;
   std::map<std::array<int, 3>, std::size_t> index_;
   std::array<int, 3> last_key_{};
@@ -105,13 +105,13 @@ void read_binary_elements(Cursor& cursor, RawMesh& mesh) {
     const ElementType& type = fixed_type(cursor, binary.integer("an element's type"));
     const int block_size = binary.integer("the number of elements of a block");
     const int tag_count = binary.integer("the number of tags of a block's elements");
-    if (block_size < 1 || static_cast<std::size_t>(block_size) > count - done || tag_count < 0) {
+    if (block_size < 1 || std::size_t(block_size) > count - done || tag_count < 0) {
       cursor.fail(fmt::format("a block has {} elements with {} tags each, but {} elements remain", block_size,
                               tag_count, count - done));
     }
     for (int i = 0; i < block_size; ++i)
       add_element(cursor, blocks, type, read("an element's number"), tag_count, read);
-    done += static_cast<std::size_t>(block_size);
+    done += std::size_t(block_size);
   }
 }
 

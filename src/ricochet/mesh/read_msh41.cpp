@@ -135,7 +135,7 @@ void read_elements(Reader reader, const Entities& entities, RawMesh& mesh) {
     elements.entity = reader.integer("the tag of an element block's entity");
     elements.type = reader.integer("the element type of a block");
     const ElementType* type = find_element_type(elements.type);
-    const std::size_t nodes_each = type == nullptr ? 0 : static_cast<std::size_t>(type->node_count);
+    const std::size_t nodes_each = type == nullptr ? 0 : std::size_t(type->node_count);
     const std::size_t count = reader.count("the number of elements of a block", 2 * (nodes_each + 1),
                                            sizeof(std::uint64_t) * (nodes_each + 1));
     if (nodes_each == 0) {

@@ -14,13 +14,13 @@ namespace {
 
 template <class Value>
 int index_of(const std::vector<Value>& all, const Value& one) {
-  return static_cast<int>(std::ranges::find(all, one) - all.begin());
+  return int(std::ranges::find(all, one) - all.begin());
 }
 
 /// Renumbers vertices and sorts them.
 VertexSet renumbered(const VertexSet& set, const std::vector<int>& numbers) {
   VertexSet result;
-  for (const int vertex : set) result.push_back(numbers[static_cast<std::size_t>(vertex)]);
+  for (const int vertex : set) result.push_back(numbers[std::size_t(vertex)]);
   std::ranges::sort(result);
   return result;
 }
@@ -61,7 +61,7 @@ VertexSets make_outward_facet_vertices(CellShape shape) {
   for (const VertexSet& facet : describe(shape).facets) {
     VertexSet& around = result.emplace_back();
     for (const int vertex : describe(facet_shape(shape, result.size() - 1)).file_vertices)
-      around.push_back(facet[static_cast<std::size_t>(vertex)]);
+      around.push_back(facet[std::size_t(vertex)]);
     const Eigen::Vector3d first = reference_position(shape, {around[0]});
     const Eigen::Vector3d along = reference_position(shape, {around[1]}) - first;
     const Eigen::Vector3d across = around.size() == 2
@@ -80,8 +80,7 @@ std::vector<double> make_facet_heights(CellShape shape) {
   for (const VertexSet& simplex : cell.simplices) {
     Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
     for (int k = 0; k < cell.dimension; ++k)
-      edges.col(k) = reference_position(shape, {simplex[static_cast<std::size_t>(k) + 1]}) -
-                     reference_position(shape, {simplex[0]});
+      edges.col(k) = reference_position(shape, {simplex[std::size_t(k) + 1]}) - reference_position(shape, {simplex[0]});
     volumes += std::abs(edges.determinant());
   }
   std::vector<double> result;
@@ -133,7 +132,7 @@ const VertexSets& node_vertices(CellShape shape, int degree) {
 }
 
 int node_count(CellShape shape, int degree) {
-  return static_cast<int>(node_vertices(shape, degree).size());
+  return int(node_vertices(shape, degree).size());
 }
 
 int node_at_mean(CellShape shape, std::vector<int> vertices) {
@@ -178,8 +177,8 @@ const std::vector<int>& mirrored_nodes(CellShape shape, int degree) {
 
 Eigen::Vector3d reference_position(CellShape shape, const std::vector<int>& vertices) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const int vertex : vertices) sum += describe(shape).vertices[static_cast<std::size_t>(vertex)];
-  return sum / static_cast<double>(vertices.size());
+  for (const int vertex : vertices) sum += describe(shape).vertices[std::size_t(vertex)];
+  return sum / double(vertices.size());
 }
 
 const std::vector<int>& gmsh_nodes(CellShape shape, int degree) {

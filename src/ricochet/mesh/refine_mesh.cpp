@@ -27,28 +27,28 @@ class NewNodes {
   template <class Position>
   Index at_mean(const std::vector<Index>& vertices, const Position& position) {
     if (vertices.size() == 1) return vertices.front();
-    const auto count = static_cast<int>(vertices.size());
+    const auto count = int(vertices.size());
     NodeTable& entry = node_tables_.try_emplace(count, NodeTable{VertexSetTable(count), {}}).first->second;
     const Index found = entry.table.find_or_add(vertices.data());
-    if (found >= 0) return entry.nodes[static_cast<std::size_t>(found)];
+    if (found >= 0) return entry.nodes[std::size_t(found)];
     positions_.push_back(position());
-    entry.nodes.push_back(mesh_.node_count() + static_cast<Index>(positions_.size()) - 1);
+    entry.nodes.push_back(mesh_.node_count() + Index(positions_.size()) - 1);
     return entry.nodes.back();
   }
   /// Position of a node of the mesh or of a new one.
   [[nodiscard]] Eigen::Vector3d position_of(Index node) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
-    if (node >= mesh_.node_count()) return positions_[static_cast<std::size_t>(node - mesh_.node_count())];
+    if (node >= mesh_.node_count()) return positions_[std::size_t(node - mesh_.node_count())];
     result.head(mesh_.dimension) = mesh_.nodes.col(node);
     return result;
   }
   /// Adds the new nodes to the mesh.
   void add() {
     const Index before = mesh_.node_count();
-    mesh_.nodes.conservativeResize(Eigen::NoChange, before + static_cast<Index>(positions_.size()));
+    mesh_.nodes.conservativeResize(Eigen::NoChange, before + Index(positions_.size()));
     for (std::size_t i = 0; i < positions_.size(); ++i)
-      mesh_.nodes.col(before + static_cast<Index>(i)) = positions_[i].head(mesh_.dimension);
-    mesh_.node_tags.resize(static_cast<std::size_t>(mesh_.nodes.cols()), 0);
+      mesh_.nodes.col(before + Index(i)) = positions_[i].head(mesh_.dimension);
+    mesh_.node_tags.resize(std::size_t(mesh_.nodes.cols()), 0);
   }
 
  private:
@@ -77,7 +77,7 @@ class Cutter {
         for (const CellShapeDescription::Child& child : best_subdivision().children) {
           CellBlock& parts = by_shape[child.shape];
           add_nodes(child, parts.nodes);
-          parts.tags.push_back(block.tags[static_cast<std::size_t>(cell)]);
+          parts.tags.push_back(block.tags[std::size_t(cell)]);
         }
       }
     }
@@ -112,7 +112,7 @@ class Cutter {
     return nodes_.at_mean(vertices, [&] {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Index vertex : vertices) sum += nodes_.position_of(vertex);
-      return Eigen::Vector3d(sum / static_cast<double>(vertices.size()));
+      return Eigen::Vector3d(sum / double(vertices.size()));
     });
   }
 
@@ -133,11 +133,10 @@ class Cutter {
       std::vector<Index> of_mesh;
       Eigen::Vector3d at = Eigen::Vector3d::Zero();
       for (const int vertex : local) {
-        of_mesh.push_back(vertices[static_cast<std::size_t>(vertex)]);
-        at += reference_position(shape_, child.vertices[static_cast<std::size_t>(vertex)]);
+        of_mesh.push_back(vertices[std::size_t(vertex)]);
+        at += reference_position(shape_, child.vertices[std::size_t(vertex)]);
       }
-      result.push_back(
-          nodes_.at_mean(of_mesh, [&] { return position_in_cell(at / static_cast<double>(local.size())); }));
+      result.push_back(nodes_.at_mean(of_mesh, [&] { return position_in_cell(at / double(local.size())); }));
     }
   }
 
@@ -156,7 +155,7 @@ std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const 
                                     const std::vector<Index>& members) {
   const auto count = [](CellShape parent, CellShape child) {
     const auto has_shape = [child](const CellShapeDescription::Child& each) { return each.shape == child; };
-    return static_cast<Index>(std::count_if(children_of(parent).begin(), children_of(parent).end(), has_shape));
+    return Index(std::count_if(children_of(parent).begin(), children_of(parent).end(), has_shape));
   };
   std::vector<Index> result;
   for (const Index member : members) {
@@ -178,11 +177,9 @@ std::vector<Index> numbers_of_parts(const std::vector<CellBlock>& blocks, const 
 void require_room(const Mesh& mesh, int times) {
   double cells = 0.0, bytes = 0.0;
   for (const CellBlock& block : mesh.cells) {
-    const double parts =
-        std::pow(static_cast<double>(children_of(block.shape).size()), times) * static_cast<double>(block.size());
+    const double parts = std::pow(double(children_of(block.shape).size()), times) * double(block.size());
     cells += parts;
-    bytes += parts *
-             static_cast<double>(static_cast<std::size_t>(block.nodes_per_cell) * sizeof(Index) + sizeof(std::int64_t));
+    bytes += parts * double(std::size_t(block.nodes_per_cell) * sizeof(Index) + sizeof(std::int64_t));
   }
   const double there = physical_memory();
   if (cells <= std::numeric_limits<int>::max() && bytes <= there) return;

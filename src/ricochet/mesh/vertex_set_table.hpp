@@ -17,7 +17,7 @@ class VertexSetTable {
  public:
   /// Makes room for `capacity` cells, which may be exceeded.
   explicit VertexSetTable(int vertex_count, std::size_t capacity = 0)
-      : vertex_count_(static_cast<std::size_t>(vertex_count)), slots_(std::bit_ceil(2 * capacity + 2)) {
+      : vertex_count_(std::size_t(vertex_count)), slots_(std::bit_ceil(2 * capacity + 2)) {
     keys_.reserve(capacity * vertex_count_);
   }
 
@@ -29,12 +29,12 @@ class VertexSetTable {
   /// Returns the number of the equal cell; if there is none, adds the cell with the next number, from 0 on, and returns
   /// −1.
   Index find_or_add(const Index* vertices) {
-    if (2 * static_cast<std::size_t>(size_) + 2 > slots_.size()) grow();
+    if (2 * std::size_t(size_) + 2 > slots_.size()) grow();
     const Key key = sorted(vertices);
     Slot& slot = slots_[slot_of(key)];
     if (slot.number >= 0) return slot.number;
     slot = {hash(key), size_++};
-    keys_.insert(keys_.end(), key.begin(), key.begin() + static_cast<std::ptrdiff_t>(vertex_count_));
+    keys_.insert(keys_.end(), key.begin(), key.begin() + std::ptrdiff_t(vertex_count_));
     return -1;
   }
 
@@ -50,7 +50,7 @@ class VertexSetTable {
     before.swap(slots_);
     for (const Slot& slot : before) {
       if (slot.number < 0) continue;
-      std::size_t at = static_cast<std::size_t>(slot.hash) & (slots_.size() - 1);
+      std::size_t at = std::size_t(slot.hash) & (slots_.size() - 1);
       while (slots_[at].number >= 0) at = (at + 1) & (slots_.size() - 1);
       slots_[at] = slot;
     }
@@ -69,7 +69,7 @@ class VertexSetTable {
   std::uint64_t hash(const Key& key) const {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < vertex_count_; ++i) {
-      value = (std::rotl(value, 23) ^ static_cast<std::uint64_t>(key[i])) * 0x9e3779b97f4a7c15u;
+      value = (std::rotl(value, 23) ^ std::uint64_t(key[i])) * 0x9e3779b97f4a7c15u;
     }
     return value ^ (value >> 32);
   }
@@ -77,10 +77,10 @@ class VertexSetTable {
   std::size_t slot_of(const Key& key) const {
     const std::uint64_t key_hash = hash(key);
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = static_cast<std::size_t>(key_hash) & mask;; slot = (slot + 1) & mask) {
+    for (std::size_t slot = std::size_t(key_hash) & mask;; slot = (slot + 1) & mask) {
       if (slots_[slot].number < 0) return slot;
       if (slots_[slot].hash != key_hash) continue;
-      const Index* stored = keys_.data() + static_cast<std::size_t>(slots_[slot].number) * vertex_count_;
+      const Index* stored = keys_.data() + std::size_t(slots_[slot].number) * vertex_count_;
       if (std::equal(stored, stored + vertex_count_, key.begin())) return slot;
     }
   }

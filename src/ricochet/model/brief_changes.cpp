@@ -26,16 +26,16 @@ template <class Function>
 std::optional<Brief> find_brief_change(const Function& value, double longest, double end) {
   constexpr int parts = 32;
   constexpr double most_intervals = 20'000.0, felt = 0.05, shown = 0.1;
-  const auto intervals = static_cast<int>(std::min(std::ceil(end / longest), most_intervals));
+  const auto intervals = int(std::min(std::ceil(end / longest), most_intervals));
   std::vector<double> values(static_cast<std::size_t>(intervals * parts + 1));
   const double spacing = longest / parts;
   double scale = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    values[k] = value(std::min(static_cast<double>(k) * spacing, end));
+    values[k] = value(std::min(double(k) * spacing, end));
     scale = std::max(scale, std::abs(values[k]));
   }
   for (int i = 0; i < intervals; ++i) {
-    const double* const at = values.data() + static_cast<std::ptrdiff_t>(i) * parts;
+    const double* const at = values.data() + std::ptrdiff_t(i) * parts;
     const auto beside = [&](int k) { return std::abs(at[k] - at[0] - (at[parts] - at[0]) * k / parts); };
     double most = 0.0;
     for (int k = 1; k < parts; ++k) most = std::max(most, beside(k));
@@ -43,8 +43,8 @@ std::optional<Brief> find_brief_change(const Function& value, double longest, do
     // The ends of the neighbouring intervals would reveal the change to a step as well.
     double least_end = at[0], most_end = at[0];
     for (int k = std::max(i - 1, 0); k <= std::min(i + 2, intervals); ++k) {
-      least_end = std::min(least_end, values[static_cast<std::size_t>(k * parts)]);
-      most_end = std::max(most_end, values[static_cast<std::size_t>(k * parts)]);
+      least_end = std::min(least_end, values[std::size_t(k * parts)]);
+      most_end = std::max(most_end, values[std::size_t(k * parts)]);
     }
     if (most_end - least_end > shown * most) continue;
     int first = 1, last = parts - 1;

@@ -26,7 +26,7 @@ void refuse(const Case& input, const std::string& key_path, const std::string& m
 }
 
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension) {
-  if (length != 0 && static_cast<int>(length) != dimension) {
+  if (length != 0 && int(length) != dimension) {
     refuse(input, key_path,
            fmt::format("{} has {}, but the mesh has dimension {}: write {}", key_path,
                        counted(length, "entry", "entries"), dimension, dimension));
@@ -186,7 +186,7 @@ void add_supports(const Case& input, Model& model) {
         refuse(input, key,
                fmt::format("support of group \"{}\" prescribes {} of a node that another support prescribes as \"{}\"; "
                            "a node can follow only one of them",
-                           section.group, axes[static_cast<std::size_t>(component)], supports.expression(dof).text()));
+                           section.group, axes[std::size_t(component)], supports.expression(dof).text()));
       }
     }
   }
@@ -205,7 +205,7 @@ void add_initial_conditions(const Case& input, Model& model) {
       for (Index node = 0; node < model.space.node_count(); ++node) {
         const auto at = model.space.nodes.col(node);
         for (int k = 0; k < d; ++k) {
-          result[node * d + k] = value[static_cast<std::size_t>(k)](at[0], at[1], d == 3 ? at[2] : 0.0, 0.0);
+          result[node * d + k] = value[std::size_t(k)](at[0], at[1], d == 3 ? at[2] : 0.0, 0.0);
         }
       }
     });
@@ -229,7 +229,7 @@ bool is_curved(const Mesh& mesh) {
       for (std::size_t k = 0; k < vertices.size(); ++k) {
         Vector mean = Vector::Zero(mesh.dimension);
         for (const int vertex : vertices[k]) mean += mesh.nodes.col(nodes[vertex]);
-        mean /= static_cast<double>(vertices[k].size());
+        mean /= double(vertices[k].size());
         if ((mesh.nodes.col(nodes[k]) - mean).norm() > 1e-9 * size) return true;
       }
     }

@@ -90,7 +90,7 @@ void place_on_axis(const Case& input, Mesh& mesh) {
       refuse(input, "mesh.plane",
              fmt::format("node {} is at ({:.6g}, {:.6g}), on the wrong side of the axis: x is the distance from the "
                          "axis and must not be negative; move the mesh (\"move\"), or mesh one half of the section",
-                         mesh.node_tags[static_cast<std::size_t>(node)], x, mesh.nodes(1, node)));
+                         mesh.node_tags[std::size_t(node)], x, mesh.nodes(1, node)));
     }
     if (x > limit || x == 0.0) continue;
     x = 0.0;

@@ -41,7 +41,7 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
   const ContactBoundary& contact = model.problem.contact;
   Vector gap = contact.initial_gap;
   for (Index i = 0; i < gap.size(); ++i) gap[i] += contact.rows->normal(i).dot(pair.pair_at);
-  const PenetratingPoints overlap = penetrating_points(model.problem, gap, static_cast<int>(number));
+  const PenetratingPoints overlap = penetrating_points(model.problem, gap, int(number));
   if (overlap.count == 0) return;
   log::warning(fmt::format(
       "{}: {} overlap at the displacement pair_at: {} inside the other body, the deepest by {:.3g} at {} of the mesh, "
@@ -58,8 +58,7 @@ void check_sliding_bodies(const Case& input, const std::string& key, const Model
   const std::vector<int> body_of_node = find_connected_bodies(model.space).of_node;
   const auto check = [&](const std::vector<Index>& facets, const char* name, const std::string& group) {
     std::set<int> bodies;
-    for (const Index node : facet_nodes(model.space, facets))
-      bodies.insert(body_of_node[static_cast<std::size_t>(node)]);
+    for (const Index node : facet_nodes(model.space, facets)) bodies.insert(body_of_node[std::size_t(node)]);
     if (bodies.size() < 2) return;
     refuse(input, key + name,
            fmt::format("with sliding = \"large\" each side must be the surface of one body, but \"{}\" is on {} "
@@ -120,7 +119,7 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
   pair.large_sliding = section.large_sliding;
   pair.tied = section.tied;
   if (!section.pair_at.empty())
-    pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), static_cast<Index>(section.pair_at.size()));
+    pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), Index(section.pair_at.size()));
   std::vector<Index> common;
   std::set_intersection(pair.facets.begin(), pair.facets.end(), pair.opposite_facets.begin(),
                         pair.opposite_facets.end(), std::back_inserter(common));
@@ -234,7 +233,7 @@ void check_body_overlaps(const Case& input, const Model& model) {
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.between_bodies() || pair.tied) continue;
-    const PenetratingPoints overlap = penetrating_points(model.problem, gap, static_cast<int>(number));
+    const PenetratingPoints overlap = penetrating_points(model.problem, gap, int(number));
     if (overlap.count == 0) continue;
     refuse(
         input, fmt::format("contact.{}.group", model.contacts[number].entry),
@@ -252,7 +251,7 @@ namespace {
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
   const ContactPair& pair = model.contact_pairs[number];
   const PenetratingPoints overlap =
-      penetrating_points(model.problem, gap, static_cast<int>(number), facet_deviation * model.sizes.diameter);
+      penetrating_points(model.problem, gap, int(number), facet_deviation * model.sizes.diameter);
   if (overlap.count == 0) return;
   // A static start pushes a body that is deeper inside through the obstacle: it is not where it is meant to be. (Bodies
   // that overlap by more than half a cell are not paired.)

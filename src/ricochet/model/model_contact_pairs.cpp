@@ -45,15 +45,15 @@ class PairFinder {
     for (const Index facet : of_all.facets) {
       const std::vector<Index> nodes = facet_nodes(model_.space, {facet});
       if (std::ranges::any_of(nodes, [&](Index node) { return tied_.contains(node); })) continue;
-      surfaces[static_cast<std::size_t>(body_of(nodes.front()))].push_back(facet);
+      surfaces[std::size_t(body_of(nodes.front()))].push_back(facet);
     }
     const std::size_t before = contacts.size();
     std::size_t count = 0, left_out = 0;
     for (int i = 0; i < bodies_.count; ++i) {
-      if (surfaces[static_cast<std::size_t>(i)].empty()) continue;
+      if (surfaces[std::size_t(i)].empty()) continue;
       ++count;
       for (int j = i + 1; j < bodies_.count; ++j) {
-        if (surfaces[static_cast<std::size_t>(j)].empty()) continue;
+        if (surfaces[std::size_t(j)].empty()) continue;
         if (excluded_pairs_.contains({i, j})) {
           ++left_out;
         } else {
@@ -71,7 +71,7 @@ class PairFinder {
   }
 
  private:
-  [[nodiscard]] int body_of(Index node) const { return bodies_.of_node[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] int body_of(Index node) const { return bodies_.of_node[std::size_t(node)]; }
 
   [[nodiscard]] std::set<int> bodies_on(const std::vector<Index>& facets) const {
     std::set<int> result;
@@ -83,10 +83,10 @@ class PairFinder {
                                      const std::vector<std::vector<Index>>& surfaces) const {
     ModelContact pair = of_all;
     pair.all_pairs_group = of_all.group;
-    pair.group = short_name(names_[static_cast<std::size_t>(one)]);
-    pair.against = short_name(names_[static_cast<std::size_t>(other)]);
-    pair.facets = surfaces[static_cast<std::size_t>(one)];
-    pair.opposite_facets = surfaces[static_cast<std::size_t>(other)];
+    pair.group = short_name(names_[std::size_t(one)]);
+    pair.against = short_name(names_[std::size_t(other)]);
+    pair.facets = surfaces[std::size_t(one)];
+    pair.opposite_facets = surfaces[std::size_t(other)];
     return pair;
   }
 

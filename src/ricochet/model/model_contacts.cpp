@@ -59,9 +59,7 @@ void warn_of_bounds_without_area(const Model& model) {
     const ContactSection& section = model.contacts[k];
     if (section.friction_bound == 0.0) continue;
     double largest = 0.0;
-    const auto of_pair = [&](Index point) {
-      return contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(k);
-    };
+    const auto of_pair = [&](Index point) { return contact.pair[std::size_t(point)] == int(k); };
     for (Index i = 0; i < contact.size(); ++i)
       largest = std::max(largest, of_pair(i) ? contact.friction_bound[i] : 0.0);
     Index without = 0;

@@ -27,7 +27,7 @@ void require_ground(const Case& input, const ObstacleSection& section, const std
   const std::vector<std::string> motions{"x", "y", "z", "rotation"};
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const bool is_rotation = k == 3;
-    if (!is_rotation && static_cast<Index>(k) >= dimension) continue;
+    if (!is_rotation && Index(k) >= dimension) continue;
     const bool has_spring =
         is_rotation ? section.rotation_spring > 0.0 : k < section.spring.size() && section.spring[k] > 0.0;
     const bool is_supported = std::ranges::find(section.hold, motions[k]) != section.hold.end();
@@ -115,7 +115,7 @@ void support_free_bodies(const Case& input, Model& model) {
   for_each_free_body(input, model, [&](const ObstacleSection& section, const FreeMotion& body, const std::string& key) {
     const std::vector<std::string> axes{"x", "y", "z"};
     for (const std::string& direction : section.hold) {
-      const auto axis = static_cast<Index>(std::ranges::find(axes, direction) - axes.begin());
+      const auto axis = Index(std::ranges::find(axes, direction) - axes.begin());
       if (axis < 3 && axis >= d) refuse(input, key + ".hold", "there is no direction \"z\" in two dimensions");
       if (axis < 3) model.problem.supports.add(body.centre_node() * d + axis, still);
       for (Index k = 0; axis == 3 && k < d; ++k) model.problem.supports.add(body.rotation_node() * d + k, still);
@@ -148,7 +148,7 @@ void add_ground(const Case& input, Model& model) {
       for (std::size_t k = 0; k < values->size(); ++k) {
         if ((*values)[k] < 0.0)
           refuse(input, key + "." + name, fmt::format("\"{}\" must not be negative: it would create energy", name));
-        (*target)[body.centre_node() * d + static_cast<Index>(k)] = (*values)[k];
+        (*target)[body.centre_node() * d + Index(k)] = (*values)[k];
       }
     }
     for (Index k = 0; k < body.gyration().size(); ++k) {
@@ -172,13 +172,12 @@ void add_forces_on_free_bodies(const Case& input, Model& model) {
     if (value(0.0, 0.0, 0.0, 0.0) != 0.0) loads.add_constant(value(0.0, 0.0, 0.0, 0.0) * pattern);
   };
   for_each_free_body(input, model, [&](const ObstacleSection& section, const FreeMotion& body, const std::string&) {
-    for (std::size_t k = 0; k < section.force.size(); ++k)
-      add(body.centre_node() * d + static_cast<Index>(k), section.force[k]);
+    for (std::size_t k = 0; k < section.force.size(); ++k) add(body.centre_node() * d + Index(k), section.force[k]);
     if (section.torque.empty()) return;
     // The torque does work on the spatial rotation θ of a step, about the principal axes at the start of the step.
     loads.add_general([&body, torque = section.torque](double time, Vector& load) {
       SpaceVector value(static_cast<Index>(torque.size()));
-      for (Index k = 0; k < value.size(); ++k) value[k] = torque[static_cast<std::size_t>(k)](0.0, 0.0, 0.0, time);
+      for (Index k = 0; k < value.size(); ++k) value[k] = torque[std::size_t(k)](0.0, 0.0, 0.0, time);
       body.add_torque(value, load);
     });
   });

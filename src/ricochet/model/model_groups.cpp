@@ -88,7 +88,7 @@ class GroupCompleter {
     std::vector<char> cells(static_cast<std::size_t>(mesh_.cell_count()), name == all_cells_name ? 1 : 0);
     std::vector<std::string> fitting;
     const auto add_cells = [&](const std::vector<Index>& members) {
-      for (const Index cell : members) cells[static_cast<std::size_t>(cell)] = 1;
+      for (const Index cell : members) cells[std::size_t(cell)] = 1;
     };
     for (const Group& group : mesh_.groups) {
       if (!fits_pattern(group.name, name)) continue;

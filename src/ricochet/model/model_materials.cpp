@@ -184,18 +184,18 @@ void assign_materials(const Case& input, Model& model) {
   const Mesh& mesh = model.mesh;
   model.body = Body{&mesh, &model.space, plane_state(input), {}, {}};
   model.problem.axisymmetric = is_axisymmetric(model.body);
-  model.body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), -1);
+  model.body.cell_material.assign(std::size_t(mesh.cell_count()), -1);
   for (std::size_t i = 0; i < input.materials.size(); ++i) {
     const MaterialSection& section = input.materials[i];
     const std::string key = fmt::format("material.{}.group", i);
     for (const Index cell : group_at(input, key, mesh, section.group, mesh.dimension).members) {
-      int& assigned = model.body.cell_material[static_cast<std::size_t>(cell)];
+      int& assigned = model.body.cell_material[std::size_t(cell)];
       if (assigned >= 0) {
         refuse(input, key,
                fmt::format("groups \"{}\" and \"{}\" overlap: they share cells, which would have two materials",
-                           input.materials[static_cast<std::size_t>(assigned)].group, section.group));
+                           input.materials[std::size_t(assigned)].group, section.group));
       }
-      assigned = static_cast<int>(i);
+      assigned = int(i);
     }
     model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
                                     section.damping.mass, section.damping.stiffness});

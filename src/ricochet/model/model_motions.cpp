@@ -37,8 +37,8 @@ std::vector<Index> cells_of(const Case& input, const MotionSection& motion, cons
 
 /// Refuses two motions of one node, at the second one.
 [[noreturn]] void refuse_both(const Case& input, int a, int b, const std::string& shared) {
-  const MotionSection& first = input.motions[static_cast<std::size_t>(std::min(a, b))];
-  const MotionSection& second = input.motions[static_cast<std::size_t>(std::max(a, b))];
+  const MotionSection& first = input.motions[std::size_t(std::min(a, b))];
+  const MotionSection& second = input.motions[std::size_t(std::max(a, b))];
   refuse(input, key_of_cells(second),
          fmt::format("{} shares {} with {}, which has a motion at {}: use groups that have no node in common",
                      text_of(second), shared, text_of(first), input.where(key_of_cells(first)).text()));
@@ -52,7 +52,7 @@ std::vector<int> motions_of_nodes(const Case& input, const Model& model, const s
     for (Index cell = 0; cell < block.size(); ++cell, ++number) {
       if (of_cell[number] < 0) continue;
       for (int k = 0; k < block.nodes_per_cell; ++k) {
-        int& motion = of_node[static_cast<std::size_t>(block.cell(cell)[k])];
+        int& motion = of_node[std::size_t(block.cell(cell)[k])];
         if (motion < 0) motion = of_cell[number];
         if (motion != of_cell[number]) refuse_both(input, motion, of_cell[number], "nodes");
       }
@@ -66,9 +66,9 @@ std::vector<int> motions_of_cells(const Case& input, const Model& model) {
   std::vector<int> of_cell(static_cast<std::size_t>(model.mesh.cell_count()), -1);
   for (std::size_t i = 0; i < input.motions.size(); ++i) {
     for (const Index cell : cells_of(input, input.motions[i], model.mesh)) {
-      int& motion = of_cell[static_cast<std::size_t>(cell)];
-      if (motion >= 0) refuse_both(input, motion, static_cast<int>(i), "cells");
-      motion = static_cast<int>(i);
+      int& motion = of_cell[std::size_t(cell)];
+      if (motion >= 0) refuse_both(input, motion, int(i), "cells");
+      motion = int(i);
     }
   }
   return of_cell;
@@ -78,7 +78,7 @@ std::vector<int> motions_of_cells(const Case& input, const Model& model) {
 /// no linear momentum, up to rounding, even where cells are curved and the displacement is of degree 1.
 Points centres_of_mass(const Model& model, const std::vector<int>& of_cell, std::size_t motions) {
   const Points& nodes = model.space.nodes;
-  Points moments = Points::Zero(nodes.rows(), static_cast<Index>(motions));
+  Points moments = Points::Zero(nodes.rows(), Index(motions));
   std::vector<double> masses(motions, 0.0);
   // Moments are taken about a node of the motion's own cells, to lose no digits far from the origin.
   std::vector<Index> origins(motions, -1);
@@ -86,15 +86,15 @@ Points centres_of_mass(const Model& model, const std::vector<int>& of_cell, std:
   CellMasses(model.body).for_each([&](const std::vector<Index>& of_nodes, const Matrix& mass) {
     const int motion = of_cell[cell++];
     if (motion < 0) return;
-    const auto m = static_cast<std::size_t>(motion);
+    const auto m = std::size_t(motion);
     if (origins[m] < 0) origins[m] = of_nodes.front();
     const Vector shares = mass.rowwise().sum();
     for (std::size_t k = 0; k < of_nodes.size(); ++k)
-      moments.col(motion) += shares[static_cast<Index>(k)] * (nodes.col(of_nodes[k]) - nodes.col(origins[m]));
+      moments.col(motion) += shares[Index(k)] * (nodes.col(of_nodes[k]) - nodes.col(origins[m]));
     masses[m] += shares.sum();
   });
   for (std::size_t m = 0; m < motions; ++m) {
-    const auto column = static_cast<Index>(m);
+    const auto column = Index(m);
     moments.col(column) = moments.col(column) / masses[m] + nodes.col(origins[m]);
   }
   return moments;
@@ -131,9 +131,9 @@ void add_motions(const Case& input, Model& model) {
   const Points centres = centres_of_mass(model, of_cell, input.motions.size());
   const int d = model.mesh.dimension;
   for (Index node = 0; node < model.space.node_count(); ++node) {
-    const int number = of_node[static_cast<std::size_t>(node)];
+    const int number = of_node[std::size_t(node)];
     if (number < 0) continue;
-    const MotionSection& motion = input.motions[static_cast<std::size_t>(number)];
+    const MotionSection& motion = input.motions[std::size_t(number)];
     auto velocity = model.initial.velocity.segment(node * d, d);
     if (!motion.velocity.empty()) velocity += vector_of(motion.velocity);
     if (motion.spin.empty()) continue;

@@ -23,7 +23,7 @@ decltype(auto) located(const Case& input, const std::string& key_path, const Wor
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension);
 
 [[nodiscard]] inline Vector vector_of(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+  return Eigen::Map<const Vector>(values.data(), Index(values.size()));
 }
 
 /// Checks every vector and component of the case against the dimension of the mesh.

@@ -59,8 +59,7 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
 void warn_of_few_interior_nodes(const Model& model, std::size_t contact_nodes) {
   constexpr double most = 0.4;
   const Index nodes = model.space.node_count();
-  const bool is_thin =
-      model.space.degree == 1 && static_cast<double>(contact_nodes) > most * static_cast<double>(nodes);
+  const bool is_thin = model.space.degree == 1 && double(contact_nodes) > most * double(nodes);
   if (!is_thin || !model.problem.has_singular_mass() || !model.problem.contact.has_friction()) return;
   log::warning(fmt::format(
       "{} of {} nodes are contact nodes, whose inertia mass \"{}\" moves to nodes off the contact "
@@ -125,14 +124,14 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
     const SupportSection& section = input.supports[i];
     if (!section.value.depends_on_time()) continue;
     const std::vector<long> jumps =
-        find_jumps([&](long step) { return section.value(0.0, 0.0, 0.0, static_cast<double>(step) * time.step); },
+        find_jumps([&](long step) { return section.value(0.0, 0.0, 0.0, double(step) * time.step); },
                    std::min(step_count(time), most_instants));
     if (jumps.empty()) continue;
     log::warning(fmt::format(
         "{}: the velocity of this support jumps at t = {:.6g}{}. {} keeps such a jump from step to step with "
         "alternating sign in the support's force, which {}; make the motion smooth, for example with "
         "0.5*(1-cos(pi*min(t/T, 1))), and resolve it with at least ten steps, or do not use the forces of this support",
-        input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(jumps.front()) * time.step,
+        input.where(fmt::format("support.{}.value", i)).text(), double(jumps.front()) * time.step,
         jumps.size() > 1 ? fmt::format(" (and {} later)", counted(jumps.size() - 1, "time")) : "", scheme_text(time),
         response == JumpResponse::unstable ? "grows with every step" : "is the larger the shorter the step"));
   }
@@ -265,8 +264,7 @@ void add_uniform(const std::vector<Expression>& value,
   for (std::size_t k = 0; k < value.size(); ++k) {
     if (value[k].is_constant() && value[k](0.0, 0.0, 0.0, 0.0) == 0.0) continue;
     Vector pattern = Vector::Zero(dofs);
-    integrate([k](const Vector&, Vector& force) { force = Vector::Unit(force.size(), static_cast<Index>(k)); },
-              pattern);
+    integrate([k](const Vector&, Vector& force) { force = Vector::Unit(force.size(), Index(k)); }, pattern);
     if (value[k].is_constant()) {
       loads.add_constant(value[k](0.0, 0.0, 0.0, 0.0) * pattern);
     } else {
@@ -285,7 +283,7 @@ void add_force(const std::vector<Expression>& value, const std::function<void(co
     integrate(
         [&](const Vector& x, Vector& force) {
           for (Index k = 0; k < force.size(); ++k)
-            force[k] = value[static_cast<std::size_t>(k)](x[0], x[1], x.size() == 3 ? x[2] : 0.0, time);
+            force[k] = value[std::size_t(k)](x[0], x[1], x.size() == 3 ? x[2] : 0.0, time);
         },
         load);
   };
@@ -341,7 +339,7 @@ void add_loads(const Case& input, Model& model) {
     Vector acceleration(dofs);
     for (Index i = 0; i < dofs; ++i) {
       const bool is_rotation = model.problem.is_rotation_node(i / d);
-      acceleration[i] = is_rotation ? 0.0 : input.load.gravity[static_cast<std::size_t>(i % d)];
+      acceleration[i] = is_rotation ? 0.0 : input.load.gravity[std::size_t(i % d)];
     }
     Vector weight;
     model.problem.mass.multiply(acceleration, weight);

@@ -48,8 +48,8 @@ Points boundary_nodes(const Mesh& mesh) {
   }
   std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  Points nodes(mesh.dimension, static_cast<Index>(numbers.size()));
-  for (std::size_t i = 0; i < numbers.size(); ++i) nodes.col(static_cast<Index>(i)) = mesh.nodes.col(numbers[i]);
+  Points nodes(mesh.dimension, Index(numbers.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i) nodes.col(Index(i)) = mesh.nodes.col(numbers[i]);
   return nodes;
 }
 

@@ -58,7 +58,7 @@ HistoryBodies bodies_of_history(const Model& model) {
   std::set<std::string> used_names;
   for (const MeshPart& part : model.mesh.parts) used_names.insert(part.name);
   for (int body = 0; body < bodies.count; ++body) {
-    std::string label = label_of(names[static_cast<std::size_t>(body)], body);
+    std::string label = label_of(names[std::size_t(body)], body);
     // The name of a part may be a number; no other body may then use it.
     if (label == std::to_string(body) && used_names.contains(label)) label = "body_" + label;
     while (std::ranges::find(result.labels, label) != result.labels.end()) label += "_";
@@ -70,7 +70,7 @@ HistoryBodies bodies_of_history(const Model& model) {
 
 /// Returns the number of pairs of the same [[contact]].
 std::size_t count_of_entry(const Model& model, std::size_t number) {
-  return static_cast<std::size_t>(std::ranges::count_if(
+  return std::size_t(std::ranges::count_if(
       model.contacts, [&](const ModelContact& contact) { return contact.entry == model.contacts[number].entry; }));
 }
 
@@ -85,7 +85,7 @@ void add_standing_columns(const Case& input, Model& model) {
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.has_two_sides() || count_of_entry(model, number) > most_pairs) continue;
-    model.sensors.push_back(make_pair_force_sensor(model.problem, static_cast<int>(number), pair.exchanged));
+    model.sensors.push_back(make_pair_force_sensor(model.problem, int(number), pair.exchanged));
   }
 }
 

@@ -63,7 +63,7 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
 class TieCollection {
  public:
   TieCollection(const Case& input, const Model& model)
-      : input_(input), model_(model), tied_by_(static_cast<std::size_t>(model.space.node_count()), -1) {}
+      : input_(input), model_(model), tied_by_(std::size_t(model.space.node_count()), -1) {}
 
   void add(std::size_t contact) {
     const ContactPair& pair = model_.contact_pairs[contact];
@@ -82,7 +82,7 @@ class TieCollection {
     }
     check_tie(input_, model_.contacts[contact].entry, pair, surface);
     for (TiedNodes::Tie& tie : surface.ties) {
-      tied_by_[static_cast<std::size_t>(tie.node)] = static_cast<int>(contact);
+      tied_by_[std::size_t(tie.node)] = int(contact);
       tie_index_[tie.node] = ties_.size();
       ties_.push_back(std::move(tie));
     }
@@ -90,7 +90,7 @@ class TieCollection {
   [[nodiscard]] std::vector<TiedNodes::Tie> release_ties() { return std::move(ties_); }
 
  private:
-  [[nodiscard]] bool is_tied(Index node) const { return tied_by_[static_cast<std::size_t>(node)] >= 0; }
+  [[nodiscard]] bool is_tied(Index node) const { return tied_by_[std::size_t(node)] >= 0; }
   /// Returns true if one of these nodes is the node itself or follows it.
   [[nodiscard]] bool leads_to(const TiedNodes::Weights& weights, Index node) const {
     return std::ranges::any_of(weights, [&](const auto& entry) {
@@ -106,7 +106,7 @@ class TieCollection {
   }
   [[noreturn]] void refuse_second_tie(std::size_t contact, Index node) const {
     const Vector at = model_.space.nodes.col(node);
-    const int by = tied_by_[static_cast<std::size_t>(node)];
+    const int by = tied_by_[std::size_t(node)];
     refuse(input_, fmt::format("contact.{}.group", model_.contacts[contact].entry),
            fmt::format("the node at ({:.6g}) of group \"{}\" and others {}: they cannot follow two surfaces; make the "
                        "other group follow (multipliers_on), leave the facets around them out of one of the groups, or "

@@ -65,9 +65,9 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
 /// as a full turn would otherwise count as rest.
 double largest_rotation(const Obstacle& obstacle, Index dimension, const Case& input) {
   constexpr int most_steps = 500, parts = 16;
-  const double h = input.time.step, steps = std::min(std::ceil(input.time.end / h), static_cast<double>(most_steps));
+  const double h = input.time.step, steps = std::min(std::ceil(input.time.end / h), double(most_steps));
   double largest = 0.0;
-  for (int k = 0; k < static_cast<int>(steps); ++k) {
+  for (int k = 0; k < int(steps); ++k) {
     const double start = k * input.time.end / steps;
     double angle = 0.0;
     for (int part = 0; part < parts; ++part)

@@ -10,7 +10,7 @@
 namespace ricochet {
 
 BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
-    : problem_(problem), body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1) {
+    : problem_(problem), body_of_node_(std::size_t(problem.nodes.cols()), -1) {
   const int d = problem.dimension;
   for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(d))) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
@@ -18,15 +18,15 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     Body body;
     std::array<bool, 3> supported{};
     for (const Index node : members) {
-      for (int k = 0; k < d; ++k) supported[static_cast<std::size_t>(k)] |= problem.supports.contains(node * d + k);
+      for (int k = 0; k < d; ++k) supported[std::size_t(k)] |= problem.supports.contains(node * d + k);
     }
     const auto count = std::ranges::count(supported, true);
-    if (count == 1 && d == 3) body.axis = static_cast<int>(std::ranges::find(supported, true) - supported.begin());
-    for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
+    if (count == 1 && d == 3) body.axis = int(std::ranges::find(supported, true) - supported.begin());
+    for (const Index node : members) body_of_node_[std::size_t(node)] = int(bodies_.size());
     if (!problem.axisymmetric && (count == 0 || body.axis >= 0)) {
-      const auto size = static_cast<Index>(members.size());
+      const auto size = Index(members.size());
       const Index stride = std::max(Index{1}, size / most_fitted);
-      for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[static_cast<std::size_t>(i)]);
+      for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[std::size_t(i)]);
     }
     bodies_.push_back(std::move(body));
   }
@@ -41,8 +41,8 @@ Tensor BodyRotations::fit_body(const Body& body, const Vector& displacement) con
     centre += position;
     now += position + displacement.segment<d>(node * d);
   }
-  centre /= static_cast<double>(body.fitted.size());
-  now /= static_cast<double>(body.fitted.size());
+  centre /= double(body.fitted.size());
+  now /= double(body.fitted.size());
   Eigen::Matrix<double, d, d> sum = Eigen::Matrix<double, d, d>::Zero();
   for (const Index node : body.fitted) {
     const Position position = problem_.nodes.col(node);

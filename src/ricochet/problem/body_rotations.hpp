@@ -19,12 +19,10 @@ class BodyRotations {
 
   [[nodiscard]] std::size_t count() const { return bodies_.size(); }
   /// Body of a node; −1 for tied nodes and for nodes of rigid bodies.
-  [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[static_cast<std::size_t>(node)]; }
-  [[nodiscard]] bool rotates(int body) const { return !bodies_[static_cast<std::size_t>(body)].fitted.empty(); }
+  [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[std::size_t(node)]; }
+  [[nodiscard]] bool rotates(int body) const { return !bodies_[std::size_t(body)].fitted.empty(); }
   /// Axis of rotation of a body, 2 in 2D; −1 if free to rotate about any axis.
-  [[nodiscard]] int axis(int body) const {
-    return problem_.dimension == 2 ? 2 : bodies_[static_cast<std::size_t>(body)].axis;
-  }
+  [[nodiscard]] int axis(int body) const { return problem_.dimension == 2 ? 2 : bodies_[std::size_t(body)].axis; }
   /// Computes one rotation per body; in 2D about z.
   void fit(const Vector& displacement, std::vector<Tensor>& rotations) const;
 

@@ -5,7 +5,7 @@
 namespace ricochet {
 
 void Damping::set_mass_part(const SparseMatrix& matrix, const Points& nodes) {
-  mass_part_.emplace(matrix, static_cast<int>(nodes.rows()));
+  mass_part_.emplace(matrix, int(nodes.rows()));
 }
 
 void Damping::set_stiffness_part(const SparseMatrix& matrix, const Points& nodes) {

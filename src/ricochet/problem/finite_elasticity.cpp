@@ -20,8 +20,7 @@ std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::
   if (body_.tied != nullptr) {
     for (const TiedNodes::Tie& tie : body_.tied->ties()) {
       for (const auto& [node, weight] : tie.weights) {
-        if (weight != 0.0 && nodes[static_cast<std::size_t>(node)] != 0)
-          selected[static_cast<std::size_t>(tie.node)] = 1;
+        if (weight != 0.0 && nodes[std::size_t(node)] != 0) selected[std::size_t(tie.node)] = 1;
       }
     }
   }

@@ -24,7 +24,7 @@ Eigen::Vector3d FlightPrediction::at(const Vector& values, Index node) const {
 
 bool FlightPrediction::has_inertia(Index node) const {
   for (Index k = 0; k < problem_.dimension; ++k) {
-    if (problem_.is_massless[static_cast<std::size_t>(node * problem_.dimension + k)] != 0) return false;
+    if (problem_.is_massless[std::size_t(node * problem_.dimension + k)] != 0) return false;
   }
   return true;
 }
@@ -34,7 +34,7 @@ template <class Visit>
 void FlightPrediction::visit_nodes(const Visit& visit) const {
   for (Index node = 0; node < problem_.nodes.cols(); ++node) {
     const int body = bodies_.body_of_node(node);
-    if (body >= 0 && bodies_.rotates(body)) visit(node, static_cast<std::size_t>(body));
+    if (body >= 0 && bodies_.rotates(body)) visit(node, std::size_t(body));
   }
 }
 
@@ -61,7 +61,7 @@ void FlightPrediction::fit(const Vector& displacement, const Vector& velocity, d
   });
   for (std::size_t body = 0; body < flights_.size(); ++body) {
     Flight& flight = flights_[body];
-    const int axis = bodies_.axis(static_cast<int>(body));
+    const int axis = bodies_.axis(int(body));
     const Tensor inertia =
         flight.spread.trace() * Tensor::Identity() - 0.5 * (flight.spread + flight.spread.transpose());
     if (axis >= 0) {

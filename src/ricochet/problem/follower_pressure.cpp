@@ -68,7 +68,7 @@ void FollowerPressure::visit_points(const Vector& displacement, const Visit& vis
       const Index* const geometry = body_.mesh->facets[facet.block].cell(facet.local);
       const Index* const nodes = body_.space->facets[facet.block].cell(facet.local);
       for (Index q = 0; q < rule.rule.weights.size(); ++q) {
-        const auto number = static_cast<std::size_t>(q);
+        const auto number = std::size_t(q);
         const Matrix& shape = rule.displacement.gradients[number];
         Point point{surface,
                     nodes,
@@ -81,11 +81,11 @@ void FollowerPressure::visit_points(const Vector& displacement, const Visit& vis
         for (Index k = 0; k < rule.geometry.values.rows(); ++k)
           point.undeformed.head<d>() += rule.geometry.values(k, q) * body_.mesh->nodes.col(geometry[k]);
         const auto map = jacobian<d, d - 1>(body_.mesh->nodes, geometry, rule.geometry.gradients[number]);
-        for (int a = 0; a < d - 1; ++a) point.slopes[static_cast<std::size_t>(a)].head<d>() = map.col(a);
+        for (int a = 0; a < d - 1; ++a) point.slopes[std::size_t(a)].head<d>() = map.col(a);
         Eigen::Matrix<double, d, 1> moved = Eigen::Matrix<double, d, 1>::Zero();
         for (Index k = 0; k < shape.rows() && displacement.size() > 0; ++k) {
           const auto u = displacement.segment<d>(nodes[k] * d);
-          for (int a = 0; a < d - 1; ++a) point.slopes[static_cast<std::size_t>(a)].head<d>() += shape(k, a) * u;
+          for (int a = 0; a < d - 1; ++a) point.slopes[std::size_t(a)].head<d>() += shape(k, a) * u;
           moved += rule.displacement.values(k, q) * u;
         }
         if (rule.axisymmetric) point.ring = ring_length(point.undeformed[0] + moved[0]);
@@ -162,7 +162,7 @@ template <int d>
 SparseMatrix FollowerPressure::stiffness_of(const Vector& displacement) const {
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&entries](Index row, Index column, double value) {
-    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+    entries.emplace_back(int(row), int(column), value);
   };
   visit_points<d>(displacement, [&](const Point& at) {
     const double factor = 0.5 * at.weight * last_.part * value_of(at.surface.pressure, at.undeformed, last_.time);

@@ -51,7 +51,7 @@ MatrixGraph InternalForce::graph(int d) const {
 }
 
 LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)
-    : rigid_(nodes, stiffness), stiffness_(stiffness, static_cast<int>(nodes.rows())) {}
+    : rigid_(nodes, stiffness), stiffness_(stiffness, int(nodes.rows())) {}
 
 void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const {
   rigid_.remove(displacement, deformation_);

@@ -67,7 +67,7 @@ void Supports::values(double time, Vector& values) const {
       evaluated = expression_[i];
       value = expressions_[evaluated](0.0, 0.0, 0.0, time);
     }
-    values[static_cast<Index>(i)] = value;
+    values[Index(i)] = value;
   }
 }
 
@@ -80,7 +80,7 @@ void Supports::derivatives(double time, double spacing, Vector& velocity, Vector
 
 double Supports::work(const Vector& reaction, const Vector& increment) const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < dofs_.size(); ++i) sum += reaction[static_cast<Index>(i)] * increment[dofs_[i]];
+  for (std::size_t i = 0; i < dofs_.size(); ++i) sum += reaction[Index(i)] * increment[dofs_[i]];
   return sum;
 }
 

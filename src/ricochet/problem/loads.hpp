@@ -47,7 +47,7 @@ class Supports {
   /// Sorts the dofs; must be called once after the last add().
   void finish();
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(dofs_.size()); }
+  [[nodiscard]] Index size() const { return Index(dofs_.size()); }
   [[nodiscard]] const std::vector<Index>& dofs() const { return dofs_; }
   [[nodiscard]] bool contains(Index dof) const;
   /// Expression of a prescribed dof.

@@ -11,10 +11,9 @@ namespace {
 /// lowest number, independent of the partition.
 double number_of(const SemidiscreteProblem& problem, Index point) {
   Index lowest = std::numeric_limits<Index>::max();
-  problem.contact.visit_own_nodes(point, [&](Index node, double) {
-    lowest = std::min(lowest, static_cast<Index>(problem.ranks->number_of(node)));
-  });
-  return static_cast<double>(lowest);
+  problem.contact.visit_own_nodes(
+      point, [&](Index node, double) { lowest = std::min(lowest, Index(problem.ranks->number_of(node))); });
+  return double(lowest);
 }
 
 /// Message of a rank to the others: number of points, then depth, number, pair and position of the deepest.
@@ -27,8 +26,8 @@ std::vector<double> message_of(const SemidiscreteProblem& problem, const Vector&
   Vector position = Vector::Zero(problem.dimension);
   problem.contact.visit_own_nodes(deepest,
                                   [&](Index node, double weight) { position += weight * problem.nodes.col(node); });
-  std::vector<double> message{static_cast<double>(points.size()), -gap[deepest], number_of(problem, deepest),
-                              static_cast<double>(problem.contact.pair[static_cast<std::size_t>(deepest)])};
+  std::vector<double> message{double(points.size()), -gap[deepest], number_of(problem, deepest),
+                              double(problem.contact.pair[std::size_t(deepest)])};
   message.insert(message.end(), position.begin(), position.end());
   return message;
 }
@@ -40,17 +39,17 @@ PenetratingPoints penetrating_points(const SemidiscreteProblem& problem, const V
   PenetratingPoints inside;
   const ContactBoundary& contact = problem.contact;
   for (Index i = 0; i < gap.size(); ++i) {
-    if (pair && contact.pair[static_cast<std::size_t>(i)] != *pair) continue;
+    if (pair && contact.pair[std::size_t(i)] != *pair) continue;
     if (gap[i] < -std::max(depth, contact.rows->gap_rounding[i])) inside.points.push_back(i);
   }
   double number = 0.0;
   for (const std::vector<double>& message : problem.ranks->all_gather(message_of(problem, gap, inside.points))) {
-    inside.count += static_cast<Index>(message[0]);
+    inside.count += Index(message[0]);
     if (message.size() == 1 || message[1] < inside.deepest) continue;
     if (message[1] == inside.deepest && message[2] > number) continue;
     inside.deepest = message[1];
     number = message[2];
-    inside.pair = static_cast<int>(message[3]);
+    inside.pair = int(message[3]);
     inside.position = Eigen::Map<const Vector>(message.data() + 4, problem.dimension);
   }
   return inside;

@@ -30,7 +30,7 @@ Axial<d> cross(const Position& x, const Displacement& u) {
 /// pattern with a structured mesh.
 std::size_t scattered(std::uint64_t k, std::size_t count) {
   const std::uint64_t fraction = (k * 2654435769u) & 0xffffffffu;
-  return static_cast<std::size_t>((fraction * count) >> 32);
+  return std::size_t((fraction * count) >> 32);
 }
 
 /// Displacement of an infinitesimal rotation of all positions about an axis by the angle 1.
@@ -48,7 +48,7 @@ Vector rotation_about(Index axis, const Points& positions) {
 }  // namespace
 
 RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
-    : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
+    : dimension_(int(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
   find_bodies(nodes, stiffness);
   select_rotations_that_strain(stiffness);
   if (dimension_ == 2) select_translations_that_strain(stiffness);
@@ -57,15 +57,15 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
 
 /// Fills bodies_, positions_ and body_of_node_.
 void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness) {
-  std::vector<std::vector<Index>> components = graph_components(MatrixGraph(stiffness, static_cast<int>(nodes.rows())));
-  if (components.size() > 1) body_of_node_.resize(static_cast<std::size_t>(nodes.cols()));
+  std::vector<std::vector<Index>> components = graph_components(MatrixGraph(stiffness, int(nodes.rows())));
+  if (components.size() > 1) body_of_node_.resize(std::size_t(nodes.cols()));
   for (std::vector<Index>& members : components) {
     std::ranges::sort(members);
-    const auto number = static_cast<int>(bodies_.size());
+    const auto number = int(bodies_.size());
     bodies_.push_back(make_body(nodes, members));
     for (const Index node : members) {
       positions_.col(node) = nodes.col(node) - bodies_.back().centre;
-      if (components.size() > 1) body_of_node_[static_cast<std::size_t>(node)] = number;
+      if (components.size() > 1) body_of_node_[std::size_t(node)] = number;
     }
   }
 }
@@ -73,13 +73,12 @@ void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness
 RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<Index>& members) {
   const Index d = nodes.rows();
   Body body;
-  const bool all = static_cast<Index>(members.size()) <= most_fitted;
-  const std::size_t fitted = all ? members.size() : static_cast<std::size_t>(most_fitted);
-  for (std::size_t k = 0; k < fitted; ++k)
-    body.fitted.push_back(static_cast<int>(members[all ? k : scattered(k, members.size())]));
-  const auto count = static_cast<Index>(body.fitted.size());
+  const bool all = Index(members.size()) <= most_fitted;
+  const std::size_t fitted = all ? members.size() : std::size_t(most_fitted);
+  for (std::size_t k = 0; k < fitted; ++k) body.fitted.push_back(int(members[all ? k : scattered(k, members.size())]));
+  const auto count = Index(body.fitted.size());
   body.positions.resize(d, count);
-  for (Index i = 0; i < count; ++i) body.positions.col(i) = nodes.col(body.fitted[static_cast<std::size_t>(i)]);
+  for (Index i = 0; i < count; ++i) body.positions.col(i) = nodes.col(body.fitted[std::size_t(i)]);
   body.centre = body.positions.rowwise().mean();
   body.positions.colwise() -= body.centre;
   body.position_sum = body.positions.rowwise().sum();
@@ -95,7 +94,7 @@ RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<
 }
 
 std::size_t RigidMotion::body_of(std::size_t node) const {
-  return body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
+  return body_of_node_.empty() ? 0 : std::size_t(body_of_node_[node]);
 }
 
 std::vector<char> RigidMotion::strained_by(const Vector& motion, const SparseMatrix& stiffness) const {
@@ -109,7 +108,7 @@ std::vector<char> RigidMotion::strained_by(const Vector& motion, const SparseMat
         force += entry.value() * motion[entry.row()];
         terms += std::abs(entry.value() * motion[entry.row()]);
       }
-      if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
+      if (std::abs(force) > rounding * terms) strained[std::size_t(dof / d)] = 1;
     }
   });
   return strained;
@@ -143,9 +142,9 @@ RigidMotion::Motion RigidMotion::fit(const Body& body, const Vector& displacemen
   for (std::size_t i = 0; i < body.fitted.size(); ++i) {
     const Eigen::Matrix<double, d, 1> u = displacement.segment<d>(Index{body.fitted[i]} * d);
     sum += u;
-    moment += cross<d>(body.positions.col(static_cast<Index>(i)), u);
+    moment += cross<d>(body.positions.col(Index(i)), u);
   }
-  const Eigen::Matrix<double, d, 1> mean = sum / static_cast<double>(body.fitted.size());
+  const Eigen::Matrix<double, d, 1> mean = sum / double(body.fitted.size());
   moment -= cross<d>(body.position_sum, mean);  // Σ x × (u − mean)
   Motion motion;
   motion.translation.template head<d>() = mean;
@@ -165,7 +164,7 @@ void RigidMotion::fit_bodies(const Vector& displacement) const {
 /// Rigid part of the displacement of the last fit.
 template <int d>
 Eigen::Matrix<double, d, 1> RigidMotion::rigid_part(Index node) const {
-  const Motion& motion = motions_[body_of(static_cast<std::size_t>(node))];
+  const Motion& motion = motions_[body_of(std::size_t(node))];
   const Eigen::Matrix<double, d, 1> x = positions_.col(node).template head<d>();
   Eigen::Matrix<double, d, 1> rotational;
   if constexpr (d == 2) {

@@ -15,7 +15,7 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
     if (!obstacles[k]->has_constant_normals()) continue;  // the geometry computes its gaps
     const SpaceVector translation = obstacles[k]->translation(time);
     for (Index i = 0; i < gap.size(); ++i) {
-      if (pair[static_cast<std::size_t>(i)] == static_cast<int>(k)) gap[i] -= normals.col(i).dot(translation);
+      if (pair[std::size_t(i)] == int(k)) gap[i] -= normals.col(i).dot(translation);
     }
   }
 }
@@ -43,7 +43,7 @@ void SemidiscreteProblem::gaps(const Vector& displacement, double time, Vector& 
 void SemidiscreteProblem::node_gaps(const Vector& displacement, double time, Vector& gap) const {
   gap.resize(contact.node_initial_gap.size());
   for (Index i = 0; i < gap.size(); ++i) {
-    const Index first = contact.nodes[static_cast<std::size_t>(i)] * dimension;
+    const Index first = contact.nodes[std::size_t(i)] * dimension;
     gap[i] = contact.node_initial_gap[i] + contact.node_normals.col(i).dot(displacement.segment(first, dimension));
   }
   for (Index i = 0; i < contact.opposite_projection.rows(); ++i) {
@@ -85,8 +85,8 @@ void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double t
     velocity.normal[i] = rows.normals.col(i).dot(at);
     for (int k = 0; k < tangents; ++k) {
       const Index row = i * tangents + k;
-      if (rows.slips[static_cast<std::size_t>(row)] == 0) continue;
-      velocity.tangential[row] = rows.tangents[static_cast<std::size_t>(i)].col(k).dot(at);
+      if (rows.slips[std::size_t(row)] == 0) continue;
+      velocity.tangential[row] = rows.tangents[std::size_t(i)].col(k).dot(at);
     }
   }
 }
@@ -103,17 +103,17 @@ void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding)
 }
 
 void SemidiscreteProblem::gather_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const {
-  for (std::size_t i = 0; i < contact_dofs.size(); ++i) on_contact[static_cast<Index>(i)] = values[contact_dofs[i]];
+  for (std::size_t i = 0; i < contact_dofs.size(); ++i) on_contact[Index(i)] = values[contact_dofs[i]];
 }
 
 void SemidiscreteProblem::scatter_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const {
-  for (std::size_t i = 0; i < contact_dofs.size(); ++i) values[contact_dofs[i]] = on_contact[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < contact_dofs.size(); ++i) values[contact_dofs[i]] = on_contact[Index(i)];
 }
 
 std::shared_ptr<const InternalForce> SemidiscreteProblem::internal_force_at_contact() const {
   if (contact_dofs.empty()) return nullptr;
   std::vector<char> selected(static_cast<std::size_t>(nodes.cols()), 0);
-  for (const Index dof : contact_dofs) selected[static_cast<std::size_t>(dof / dimension)] = 1;
+  for (const Index dof : contact_dofs) selected[std::size_t(dof / dimension)] = 1;
   return internal_force->restricted_to(selected);
 }
 
@@ -126,14 +126,14 @@ std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {
 }
 
 void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia) {
-  problem.is_massless.assign(static_cast<std::size_t>(problem.dof_count()), 0);
+  problem.is_massless.assign(std::size_t(problem.dof_count()), 0);
   problem.massless_dofs.clear();
   problem.contact_dofs.clear();
   for (const Index dof : contact_node_dofs(problem)) {
     if (!problem.supports.contains(dof)) problem.contact_dofs.push_back(dof);
     if (!mass_without_contact_inertia) continue;
     problem.massless_dofs.push_back(dof);
-    problem.is_massless[static_cast<std::size_t>(dof)] = 1;
+    problem.is_massless[std::size_t(dof)] = 1;
   }
   problem.mass = NodeMatrix(mass, problem.dimension);
 }

@@ -54,7 +54,7 @@ struct SemidiscreteProblem {
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
   /// Number of nodes of cells; those of free rigid bodies follow.
-  [[nodiscard]] Index cell_node_count() const { return nodes.cols() - 2 * static_cast<Index>(free_bodies.size()); }
+  [[nodiscard]] Index cell_node_count() const { return nodes.cols() - 2 * Index(free_bodies.size()); }
   [[nodiscard]] bool is_of_free_body(Index node) const { return node >= cell_node_count(); }
   /// Whether the node is the second of a rigid body: its displacement, velocity and force are not spatial vectors.
   [[nodiscard]] bool is_rotation_node(Index node) const {
@@ -64,9 +64,7 @@ struct SemidiscreteProblem {
   [[nodiscard]] bool has_singular_mass() const { return has_massless_elsewhere || !massless_dofs.empty(); }
   /// Global properties, of all ranks; collective calls.
   [[nodiscard]] bool has_diagonal_mass() const { return !ranks->any(!mass.is_diagonal()); }
-  [[nodiscard]] Index global_contact_point_count() const {
-    return static_cast<Index>(ranks->sum(static_cast<double>(contact.size())));
-  }
+  [[nodiscard]] Index global_contact_point_count() const { return Index(ranks->sum(double(contact.size()))); }
   [[nodiscard]] bool has_contact_dofs() const { return has_contact_elsewhere || !contact_dofs.empty(); }
   /// Gather values per dof at contact_dofs, and scatter them back. (Eigen's indexed views copy their indices.)
   void gather_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
@@ -76,7 +74,7 @@ struct SemidiscreteProblem {
   [[nodiscard]] std::shared_ptr<const InternalForce> internal_force_at_contact() const;
   /// Obstacle of a contact point; null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
-    return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
+    return obstacles[std::size_t(contact.pair[std::size_t(point)])];
   }
   [[nodiscard]] bool has_moving_obstacles() const;
   /// Computes the gaps of all contact points at a displacement and a time.

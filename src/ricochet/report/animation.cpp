@@ -33,7 +33,7 @@ std::string number_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
 }
 std::string number_text(float value) {
-  return number_text(static_cast<double>(value));
+  return number_text(double(value));
 }
 
 template <class Values>
@@ -56,7 +56,7 @@ std::vector<std::size_t> frames_of(const RunData& run, const AnimationOptions& o
                                    run.directory, times.front(), times.back()));
     const auto nearest = std::ranges::min_element(
         times, [&](double a, double b) { return std::abs(a - *options.time) < std::abs(b - *options.time); });
-    return {static_cast<std::size_t>(nearest - times.begin())};
+    return {std::size_t(nearest - times.begin())};
   }
   std::vector<std::size_t> frames;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -88,13 +88,13 @@ const ResultField& field_of(const RunData& run, const std::string& name) {
 /// Returns one number for each node or cell: the value of a scalar, the length of a vector.
 std::vector<float> sizes_of(const std::vector<float>& values, int components) {
   std::vector<float> sizes;
-  for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(components)) {
+  for (std::size_t i = 0; i < values.size(); i += std::size_t(components)) {
     if (components == 1) {
       sizes.push_back(values[i]);
       continue;
     }
     float sum = 0.0F;
-    for (int k = 0; k < components; ++k) sum = std::hypot(sum, values[i + static_cast<std::size_t>(k)]);
+    for (int k = 0; k < components; ++k) sum = std::hypot(sum, values[i + std::size_t(k)]);
     sizes.push_back(sum);
   }
   return sizes;
@@ -112,7 +112,7 @@ class SceneWriter {
     if (options.zoom && pressure_ == nullptr)
       refuse_animation(fmt::format(
           "{}: --zoom shows the contact, but the run wrote no contact_pressure (output.fields)", run.directory));
-    const Index most = std::min(drawn_triangles, static_cast<Index>(drawn_in_all / static_cast<double>(frames)));
+    const Index most = std::min(drawn_triangles, Index(drawn_in_all / double(frames)));
     surface_ = make_surface(run.results->nodes(), run.results->cells(), most);
   }
 
@@ -127,19 +127,19 @@ class SceneWriter {
   }
 
   std::string frame_text(std::size_t frame) {
-    run_.results->read(static_cast<Index>(frame), displacement_, values_);
+    run_.results->read(Index(frame), displacement_, values_);
     const std::vector<double> positions = positions_of(values_);
-    run_.results->read(static_cast<Index>(frame), field_, values_);
+    run_.results->read(Index(frame), field_, values_);
     const std::vector<float> sizes = sizes_of(values_, field_.components);
     std::vector<float> shown;
     for (std::size_t t = 0; t < surface_.cells.size(); ++t) {
       if (!field_.on_nodes) {
-        shown.push_back(sizes[static_cast<std::size_t>(surface_.cells[t])]);
+        shown.push_back(sizes[std::size_t(surface_.cells[t])]);
         continue;
       }
       float sum = 0.0F;
       for (std::size_t k = 0; k < 3; ++k)
-        sum += sizes[static_cast<std::size_t>(surface_.nodes[static_cast<std::size_t>(surface_.corners[3 * t + k])])];
+        sum += sizes[std::size_t(surface_.nodes[std::size_t(surface_.corners[3 * t + k])])];
       shown.push_back(sum / 3.0F);
     }
     std::string text = fmt::format(R"({{"time":{:.9g},"points":{},"values":{})", run_.results->times()[frame],
@@ -154,12 +154,12 @@ class SceneWriter {
   /// Returns the positions of the surface's nodes, displaced by values with as many components as the field has.
   [[nodiscard]] std::vector<double> positions_of(const std::vector<float>& displacement) const {
     std::vector<double> result;
-    const auto width = static_cast<std::size_t>(displacement_.components);
+    const auto width = std::size_t(displacement_.components);
     for (const Index node : surface_.nodes) {
       for (std::size_t k = 0; k < 3; ++k) {
         const bool moves = !displacement.empty() && k < width;
-        result.push_back(run_.results->nodes()(static_cast<Index>(k), node) +
-                         (moves ? static_cast<double>(displacement[static_cast<std::size_t>(node) * width + k]) : 0.0));
+        result.push_back(run_.results->nodes()(Index(k), node) +
+                         (moves ? double(displacement[std::size_t(node) * width + k]) : 0.0));
       }
     }
     return result;
@@ -167,10 +167,10 @@ class SceneWriter {
 
   /// Returns the indices of the surface's nodes that are pressed.
   std::vector<int> touching_in(std::size_t frame) {
-    run_.results->read(static_cast<Index>(frame), *pressure_, values_);
+    run_.results->read(Index(frame), *pressure_, values_);
     std::vector<int> result;
     for (std::size_t i = 0; i < surface_.nodes.size(); ++i) {
-      if (values_[static_cast<std::size_t>(surface_.nodes[i])] > 0.0F) result.push_back(static_cast<int>(i));
+      if (values_[std::size_t(surface_.nodes[i])] > 0.0F) result.push_back(int(i));
     }
     return result;
   }

@@ -30,7 +30,7 @@ constexpr Index least_tetrahedra = 1000, most_tetrahedra = 100'000;
 
 /// Returns value i of a scalar field, or the length of vector i.
 float magnitude(const std::vector<float>& values, int components, Index i) {
-  if (components == 1) return values[static_cast<std::size_t>(i)];
+  if (components == 1) return values[std::size_t(i)];
   const float* v = values.data() + 3 * i;
   return std::hypot(v[0], v[1], v[2]);
 }
@@ -41,7 +41,7 @@ BodyFrames::Part::Part(std::vector<Index> its_nodes, const std::vector<int>& cel
     : nodes(std::move(its_nodes)) {
   std::map<int, int> numbers_of_cells;
   for (const int cell : cells_of_pieces) {
-    const auto [entry, is_new] = numbers_of_cells.try_emplace(cell, static_cast<int>(cells.size()));
+    const auto [entry, is_new] = numbers_of_cells.try_emplace(cell, int(cells.size()));
     if (is_new) cells.push_back(cell);
     numbers.push_back(entry->second);
   }
@@ -64,8 +64,8 @@ void BodyFrames::make_inside(std::size_t bytes) {
   for (const ResultField& field : results_.fields()) {
     if (is_shown(field)) (field.on_nodes ? on_nodes : on_cells) += 1.0;
   }
-  const double of_each = 4.0 + 1.25 * static_cast<double>(frame_count()) * (on_nodes / 5.0 + on_cells);
-  const auto room = static_cast<Index>(static_cast<double>(bytes) / of_each);
+  const double of_each = 4.0 + 1.25 * double(frame_count()) * (on_nodes / 5.0 + on_cells);
+  const auto room = Index(double(bytes) / of_each);
   if (room < least_tetrahedra) return;
   volume_ = make_volume(results_.nodes(), results_.cells(), std::min(room, most_tetrahedra));
   inside_ = Part(volume_.nodes, volume_.cells);
@@ -74,26 +74,25 @@ void BodyFrames::make_inside(std::size_t bytes) {
 void BodyFrames::choose() {
   for (const ResultField& field : results_.fields()) {
     if (is_contact(field.name) && !line_.nodes.empty())
-      contact_.push_back({field.name, true, static_cast<Index>(line_.nodes.size()), {}});
+      contact_.push_back({field.name, true, Index(line_.nodes.size()), {}});
     if (field.components > 3) left_out_.push_back(field.name);
   }
   double numbers = 0.0;
-  for (const Values& values : contact_) numbers += static_cast<double>(values.columns);
+  for (const Values& values : contact_) numbers += double(values.columns);
   for (Part* part : {&outside_, &inside_}) {
     for (int k = 0; k < dimension_ && results_.find_field("displacement") != nullptr; ++k)
-      part->deviations.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(part->nodes.size()), {}});
+      part->deviations.push_back({"xyz"[k] + std::string(), true, Index(part->nodes.size()), {}});
     for (const ResultField& field : results_.fields()) {
       const std::size_t columns = field.on_nodes ? part->nodes.size() : part->cells.size();
-      if (is_shown(field)) part->fields.push_back({field.name, field.on_nodes, static_cast<Index>(columns), {}});
+      if (is_shown(field)) part->fields.push_back({field.name, field.on_nodes, Index(columns), {}});
     }
     for (const auto* list : {&part->deviations, &part->fields}) {
-      for (const Values& values : *list) numbers += static_cast<double>(values.columns);
+      for (const Values& values : *list) numbers += double(values.columns);
     }
   }
-  const auto stride =
-      std::max<Index>(static_cast<Index>(std::ceil(numbers * static_cast<double>(frame_count()) / most_numbers)), 1);
+  const auto stride = std::max<Index>(Index(std::ceil(numbers * double(frame_count()) / most_numbers)), 1);
   for (Index frame = 0; frame < frame_count(); ++frame) {
-    if (frame % stride == 0 || frame + 1 == frame_count()) frames_.push_back(static_cast<int>(frame));
+    if (frame % stride == 0 || frame + 1 == frame_count()) frames_.push_back(int(frame));
   }
 }
 
@@ -117,14 +116,13 @@ void BodyFrames::read_frames() {
 
 void BodyFrames::store_displacement(const std::vector<float>& field) {
   std::array<double, 3> mean{};
-  for (std::size_t i = 0; i < field.size(); ++i) mean[i % 3] += static_cast<double>(field[i]);
-  for (double& component : mean) component /= static_cast<double>(field.size() / 3);
+  for (std::size_t i = 0; i < field.size(); ++i) mean[i % 3] += double(field[i]);
+  for (double& component : mean) component /= double(field.size() / 3);
   mean_.insert(mean_.end(), mean.begin(), mean.end());
   for (Part* part : {&outside_, &inside_}) {
     for (std::size_t k = 0; k < part->deviations.size(); ++k) {
       for (const Index node : part->nodes) {
-        part->deviations[k].values.push_back(
-            static_cast<float>(static_cast<double>(field[3 * static_cast<std::size_t>(node) + k]) - mean[k]));
+        part->deviations[k].values.push_back(float(double(field[3 * std::size_t(node) + k]) - mean[k]));
       }
     }
   }
@@ -163,12 +161,12 @@ std::vector<int> BodyFrames::frames_of(const std::vector<std::size_t>& rows) con
 PackedArray BodyFrames::pack(const Values& values, const std::vector<std::size_t>& rows, int bits,
                              PackedArrays& arrays) {
   std::vector<float> chosen;
-  chosen.reserve(rows.size() * static_cast<std::size_t>(values.columns));
+  chosen.reserve(rows.size() * std::size_t(values.columns));
   for (const std::size_t row : rows) {
-    const auto begin = values.values.begin() + static_cast<std::ptrdiff_t>(row) * values.columns;
+    const auto begin = values.values.begin() + std::ptrdiff_t(row) * values.columns;
     chosen.insert(chosen.end(), begin, begin + values.columns);
   }
-  const auto count = static_cast<Index>(rows.size());
+  const auto count = Index(rows.size());
   if (values.name == "contact_status") return arrays.add_small_numbers(chosen, count, values.columns);
   return arrays.add_levels(chosen, count, values.columns, bits);
 }
@@ -181,7 +179,7 @@ void BodyFrames::pack_frames(const Quality& quality, const std::vector<std::size
   std::vector<double> means;
   for (const std::size_t row : rows)
     means.insert(means.end(), {mean_[3 * row], mean_[3 * row + 1], mean_[3 * row + 2]});
-  part.mean = arrays.add_reals(means, static_cast<Index>(rows.size()), 3);
+  part.mean = arrays.add_reals(means, Index(rows.size()), 3);
   for (const Values& values : outside_.deviations)
     part.deviations.push_back(pack(values, rows, quality.displacement_bits, arrays));
   for (const Values& values : outside_.fields)
@@ -195,7 +193,7 @@ std::optional<VolumePart> BodyFrames::pack_volume(const std::vector<std::size_t>
     PackedArrays attempt = arrays;
     VolumePart part;
     part.is_thinned = volume_.is_thinned;
-    part.nodes = static_cast<Index>(volume_.nodes.size());
+    part.nodes = Index(volume_.nodes.size());
     part.tetrahedra = volume_.count();
     part.positions = pack_positions(volume_.nodes, attempt);
     part.corners = attempt.add_indices(volume_.corners);
@@ -216,19 +214,18 @@ std::optional<VolumePart> BodyFrames::pack_volume(const std::vector<std::size_t>
 PackedArray BodyFrames::pack_positions(const std::vector<Index>& nodes, PackedArrays& arrays) const {
   std::vector<float> positions;
   for (Index k = 0; k < dimension_; ++k) {
-    for (const Index node : nodes) positions.push_back(static_cast<float>(results_.nodes()(k, node)));
+    for (const Index node : nodes) positions.push_back(float(results_.nodes()(k, node)));
   }
-  return arrays.add_levels(positions, dimension_, static_cast<Index>(nodes.size()), 16);
+  return arrays.add_levels(positions, dimension_, Index(nodes.size()), 16);
 }
 
 ContactPart BodyFrames::pack_contact(std::size_t most_bytes, PackedArrays& arrays) const {
   ContactPart part;
   part.line = line_;
   if (line_.nodes.empty()) return part;
-  if (!line_.position.empty())
-    part.position = arrays.add_reals(line_.position, 1, static_cast<Index>(line_.position.size()));
+  if (!line_.position.empty()) part.position = arrays.add_reals(line_.position, 1, Index(line_.position.size()));
   std::map<Index, int> numbers;
-  for (std::size_t i = 0; i < surface_.nodes.size(); ++i) numbers.emplace(surface_.nodes[i], static_cast<int>(i));
+  for (std::size_t i = 0; i < surface_.nodes.size(); ++i) numbers.emplace(surface_.nodes[i], int(i));
   std::vector<int> nodes;
   for (const Index node : line_.nodes) nodes.push_back(numbers.contains(node) ? numbers.at(node) : -1);
   part.nodes = arrays.add_indices(nodes);
@@ -252,7 +249,7 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
   BodyPart part;
   part.left_out = left_out_;
   part.is_thinned = surface_.is_thinned;
-  part.nodes = static_cast<Index>(surface_.nodes.size());
+  part.nodes = Index(surface_.nodes.size());
   part.triangles = surface_.count();
   const std::size_t before = arrays.page_bytes();
   part.positions = pack_positions(surface_.nodes, arrays);
@@ -285,7 +282,7 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
     if (!is_last && rows.size() > 24) {
       PackedArrays sample;
       BodyPart ignored;
-      const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
+      const auto middle = rows.begin() + std::ptrdiff_t(rows.size() / 2);
       pack_frames(quality, {middle, middle + 6}, sample, ignored);
       if (sample.page_bytes() * rows.size() / 6 > left + left / 4) continue;
     }

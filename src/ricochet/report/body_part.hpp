@@ -73,7 +73,7 @@ class BodyFrames {
   [[nodiscard]] ContactPart pack_contact(std::size_t most_bytes, PackedArrays& arrays) const;
   [[nodiscard]] BodyPart pack_body(std::size_t most_bytes, PackedArrays& arrays) const;
   /// Returns the number of frames of the run.
-  [[nodiscard]] Index frame_count() const { return static_cast<Index>(results_.times().size()); }
+  [[nodiscard]] Index frame_count() const { return Index(results_.times().size()); }
 
  private:
   struct Values {

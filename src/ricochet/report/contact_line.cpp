@@ -58,7 +58,7 @@ ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>&
   for (const auto& [node, around] : neighbours) left.insert(node);
   while (!left.empty()) {
     Index node = next_start(neighbours, nodes, left);
-    line.pieces.push_back(static_cast<int>(line.nodes.size()));
+    line.pieces.push_back(int(line.nodes.size()));
     double position = 0.0;
     for (Index before = -1; node >= 0;) {
       if (before >= 0) position += (nodes.col(node) - nodes.col(before)).norm();
@@ -74,14 +74,14 @@ ContactLine make_contact_line(const Points& nodes, const std::vector<CellBlock>&
   // The pieces follow one another.
   double total_length = 0.0;
   for (std::size_t k = 0; k < line.pieces.size(); ++k) {
-    const auto end = k + 1 < line.pieces.size() ? static_cast<std::size_t>(line.pieces[k + 1]) : line.nodes.size();
+    const auto end = k + 1 < line.pieces.size() ? std::size_t(line.pieces[k + 1]) : line.nodes.size();
     total_length += line.position[end - 1];
   }
   double offset = 0.0;
   for (std::size_t k = 0; k < line.pieces.size(); ++k) {
-    const auto end = k + 1 < line.pieces.size() ? static_cast<std::size_t>(line.pieces[k + 1]) : line.nodes.size();
+    const auto end = k + 1 < line.pieces.size() ? std::size_t(line.pieces[k + 1]) : line.nodes.size();
     const double length = line.position[end - 1];
-    for (auto i = static_cast<std::size_t>(line.pieces[k]); i < end; ++i) line.position[i] += offset;
+    for (auto i = std::size_t(line.pieces[k]); i < end; ++i) line.position[i] += offset;
     offset += length + 0.05 * total_length;
   }
   return line;

@@ -222,10 +222,10 @@ Json panel_of_map(const RunData& run, const std::string& label, const FigureOpti
   for (std::size_t frame = 0; frame < run.results->times().size(); ++frame) {
     const double time = run.results->times()[frame];
     if (options.time && (time < options.time->first || time > options.time->second)) continue;
-    run.results->read(static_cast<Index>(frame), *field, values);
+    run.results->read(Index(frame), *field, values);
     Json row = Json::array();
     for (const Index node : line.nodes) {
-      const auto value = static_cast<double>(values[static_cast<std::size_t>(node)]);
+      const auto value = double(values[std::size_t(node)]);
       row.push_back(value);
       if (value > 0.0) pressures.push_back(value);
     }

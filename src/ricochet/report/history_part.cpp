@@ -20,8 +20,8 @@ std::vector<double> all_rows(const HistoryTable& history) {
 std::vector<double> thinned(const std::vector<double>& column, std::size_t rows) {
   std::vector<double> result;
   for (std::size_t begin = 0; begin < column.size(); begin += rows) {
-    const auto first = column.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = column.begin() + static_cast<std::ptrdiff_t>(std::min(begin + rows, column.size()));
+    const auto first = column.begin() + std::ptrdiff_t(begin);
+    const auto last = column.begin() + std::ptrdiff_t(std::min(begin + rows, column.size()));
     auto [least, largest] = std::minmax_element(first, last);
     if (largest < least) std::swap(least, largest);
     result.push_back(*least);
@@ -31,8 +31,8 @@ std::vector<double> thinned(const std::vector<double>& column, std::size_t rows)
 }
 
 HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, PackedArrays& arrays) {
-  const auto columns = static_cast<Index>(history.names.size());
-  const auto rows = static_cast<Index>(history.columns.at(history.names.front()).size());
+  const auto columns = Index(history.names.size());
+  const auto rows = Index(history.columns.at(history.names.front()).size());
   HistoryPart part;
   // Doubles hardly compress.
   std::vector<double> table = all_rows(history);
@@ -44,14 +44,14 @@ HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, Pa
       return part;
     }
   }
-  const auto pairs = std::max<Index>(static_cast<Index>(most_bytes) * 3 / 4 / (16 * columns), 1);
+  const auto pairs = std::max<Index>(Index(most_bytes) * 3 / 4 / (16 * columns), 1);
   part.rows_per_pair = std::max<Index>((rows + pairs - 1) / pairs, 3);
   table.clear();
   for (const std::string& name : history.names) {
-    const std::vector<double> column = thinned(history.columns.at(name), static_cast<std::size_t>(part.rows_per_pair));
+    const std::vector<double> column = thinned(history.columns.at(name), std::size_t(part.rows_per_pair));
     table.insert(table.end(), column.begin(), column.end());
   }
-  part.table = arrays.add_reals(table, columns, static_cast<Index>(table.size()) / columns);
+  part.table = arrays.add_reals(table, columns, Index(table.size()) / columns);
   return part;
 }
 

@@ -39,7 +39,7 @@ std::vector<double> running_means(const std::vector<double>& values, std::size_t
   std::vector<double> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t reach = std::min({half, i, values.size() - 1 - i});
-    result[i] = (sums[i + reach + 1] - sums[i - reach]) / static_cast<double>(2 * reach + 1);
+    result[i] = (sums[i + reach + 1] - sums[i - reach]) / double(2 * reach + 1);
   }
   return result;
 }
@@ -51,7 +51,7 @@ std::optional<double> broken_at(const RunData& run, const std::vector<std::strin
     const std::vector<double>& values = run.column(column);
     const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
     if (bad == values.end()) continue;
-    const double time = run.times_of(column)[static_cast<std::size_t>(bad - values.begin())];
+    const double time = run.times_of(column)[std::size_t(bad - values.begin())];
     if (!first || time < *first) first = time;
   }
   return first;

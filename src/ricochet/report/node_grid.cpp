@@ -11,7 +11,7 @@ namespace {
 std::uint64_t interleaved(const GridBox& box) {
   std::uint64_t result = 0;
   for (unsigned bit = 0; bit < 20; ++bit) {
-    for (unsigned k = 0; k < 3; ++k) result |= static_cast<std::uint64_t>(box[k] >> bit & 1U) << (3 * bit + k);
+    for (unsigned k = 0; k < 3; ++k) result |= std::uint64_t(box[k] >> bit & 1U) << (3 * bit + k);
   }
   return result;
 }
@@ -25,8 +25,7 @@ NodeGrid::NodeGrid(const Points& nodes, double boxes) : low_(nodes.rowwise().min
 
 GridBox NodeGrid::box(const Points& nodes, Index node) const {
   GridBox result{};
-  for (Index k = 0; k < 3; ++k)
-    result[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>((nodes(k, node) - low_[k]) * scale_);
+  for (Index k = 0; k < 3; ++k) result[std::size_t(k)] = std::uint32_t((nodes(k, node) - low_[k]) * scale_);
   return result;
 }
 
@@ -50,7 +49,7 @@ std::vector<Index> spatially_sorted(const Points& nodes, const std::vector<Index
 
 std::vector<int> local_numbers(const std::vector<Index>& chosen, Index count) {
   std::vector<int> local(static_cast<std::size_t>(count), -1);
-  for (std::size_t i = 0; i < chosen.size(); ++i) local[static_cast<std::size_t>(chosen[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < chosen.size(); ++i) local[std::size_t(chosen[i])] = int(i);
   return local;
 }
 

@@ -14,7 +14,7 @@ constexpr double smallest_visible = 1e-6;
 constexpr double file_rounding = 1e-9;
 
 Eigen::Map<const Points> points_of(const ObstacleFrame& frame) {
-  return {frame.positions.data(), 3, static_cast<Index>(frame.positions.size()) / 3};
+  return {frame.positions.data(), 3, Index(frame.positions.size()) / 3};
 }
 
 /// Translations of obstacles relative to the first frame, which has at least one point.
@@ -23,9 +23,9 @@ class Translations {
   explicit Translations(const ObstacleFrame& first)
       : first_(points_of(first)), obstacle_(first.positions.size() / 3, 0) {
     visible_distance_ = smallest_visible * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
-    const auto corners = static_cast<std::size_t>(first.corners);
+    const auto corners = std::size_t(first.corners);
     for (std::size_t k = 0; k < first.cells.size(); ++k)
-      obstacle_[static_cast<std::size_t>(first.cells[k])] = first.obstacle[k / corners];
+      obstacle_[std::size_t(first.cells[k])] = first.obstacle[k / corners];
     count_.setZero(1 + *std::ranges::max_element(obstacle_));
     for (const int obstacle : obstacle_) count_[obstacle] += 1.0;
   }
@@ -45,7 +45,7 @@ class Translations {
   }
 
  private:
-  [[nodiscard]] int obstacle(Index point) const { return obstacle_[static_cast<std::size_t>(point)]; }
+  [[nodiscard]] int obstacle(Index point) const { return obstacle_[std::size_t(point)]; }
 
   Eigen::Map<const Points> first_;
   std::vector<int> obstacle_;  ///< per point
@@ -81,9 +81,9 @@ ObstaclePart pack_obstacles(const std::vector<ObstacleFrame>& frames, PackedArra
   part.cells = arrays.add_indices(first.cells);
   part.obstacle = arrays.add_indices(first.obstacle);
   for (const ObstacleFrame* frame : shown) part.times.push_back(frame->time);
-  const auto rows = static_cast<Index>(shown.size());
+  const auto rows = Index(shown.size());
   const auto add = [&](const std::vector<double>& values, Index of_rows) {
-    return arrays.add_reals(values, of_rows, static_cast<Index>(values.size()) / of_rows);
+    return arrays.add_reals(values, of_rows, Index(values.size()) / of_rows);
   };
   const auto offsets = moves ? translations(shown) : std::nullopt;
   if (offsets) part.offsets = add(*offsets, rows);

@@ -18,7 +18,7 @@ std::string by_byte(const std::vector<Word>& words) {
   std::string bytes(sizeof(Word) * words.size(), '\0');
   for (std::size_t k = 0; k < sizeof(Word); ++k) {
     for (std::size_t i = 0; i < words.size(); ++i)
-      bytes[k * words.size() + i] = static_cast<char>(static_cast<unsigned char>(words[i] >> (8 * k)));
+      bytes[k * words.size() + i] = char(static_cast<unsigned char>(words[i] >> (8 * k)));
   }
   return bytes;
 }
@@ -60,7 +60,7 @@ class LevelCoder {
       expected += row[i - 1] - (before != nullptr ? before[i - 1] : 0U);
     const unsigned difference = (row[i] - expected) & mask_;
     const bool negative = (difference >> (bits_ - 1)) != 0;
-    return static_cast<std::uint16_t>((negative ? ~(difference << 1U) : difference << 1U) & mask_);
+    return std::uint16_t((negative ? ~(difference << 1U) : difference << 1U) & mask_);
   }
 
  private:
@@ -78,8 +78,8 @@ std::string coded(const std::vector<std::uint16_t>& levels, Index rows, Index co
     char* const out = bytes.data() + planes * r * columns;
     for (Index i = 0; i < columns; ++i) {
       const unsigned code = coder.code(row, r > 0 ? row - columns : nullptr, i);
-      out[i] = static_cast<char>(static_cast<unsigned char>(code));
-      if (planes == 2) out[columns + i] = static_cast<char>(static_cast<unsigned char>(code >> 8U));
+      out[i] = char(static_cast<unsigned char>(code));
+      if (planes == 2) out[columns + i] = char(static_cast<unsigned char>(code >> 8U));
     }
   }
   return bytes;
@@ -118,7 +118,7 @@ void append_base64(std::string_view bytes, std::string& text) {
 std::size_t PackedArrays::add(std::string bytes) {
   std::string blob = smallest(bytes);
   const auto found = std::ranges::find(blobs_, blob);
-  if (found != blobs_.end()) return static_cast<std::size_t>(found - blobs_.begin());
+  if (found != blobs_.end()) return std::size_t(found - blobs_.begin());
   blobs_.push_back(std::move(blob));
   return blobs_.size() - 1;
 }
@@ -148,7 +148,7 @@ PackedArray PackedArrays::add_indices(const std::vector<int>& values) {
   std::vector<std::uint32_t> words(values.size());
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto word = static_cast<std::uint32_t>(values[i]);
+    const auto word = std::uint32_t(values[i]);
     const std::uint32_t difference = word - before;
     words[i] = (difference >> 31U) != 0 ? ~(difference << 1U) : difference << 1U;
     before = word;
@@ -157,7 +157,7 @@ PackedArray PackedArrays::add_indices(const std::vector<int>& values) {
   array.blob = add(by_byte(words));
   array.coding = Coding::indices;
   array.rows = 1;
-  array.columns = static_cast<Index>(values.size());
+  array.columns = Index(values.size());
   return array;
 }
 
@@ -175,16 +175,15 @@ PackedArray PackedArrays::add_levels(const std::vector<float>& values, Index row
   array.rows = rows;
   array.columns = columns;
   array.bits = bits;
-  array.low = static_cast<double>(low);
-  array.step = (static_cast<double>(high) - array.low) / last;
+  array.low = double(low);
+  array.step = (double(high) - array.low) / last;
   const double inverse = array.step > 0.0 ? 1.0 / array.step : 0.0;
   std::vector<std::uint16_t> levels(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    levels[i] = static_cast<std::uint16_t>(
-        std::isfinite(values[i])
-            ? std::min<unsigned>(
-                  static_cast<unsigned>(std::lround((static_cast<double>(values[i]) - array.low) * inverse)), last)
-            : last + 1U);
+    levels[i] =
+        std::uint16_t(std::isfinite(values[i])
+                          ? std::min<unsigned>(unsigned(std::lround((double(values[i]) - array.low) * inverse)), last)
+                          : last + 1U);
   }
   array.prediction = better_prediction(levels, rows, columns, bits);
   array.blob = add(coded(levels, rows, columns, bits, array.prediction));
@@ -202,7 +201,7 @@ PackedArray PackedArrays::add_small_numbers(const std::vector<float>& values, In
   std::vector<std::uint16_t> levels(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool known = values[i] >= -1.0F && values[i] < 254.0F;
-    levels[i] = known ? static_cast<std::uint16_t>(std::lround(values[i] + 1.0F)) : std::uint16_t{255};
+    levels[i] = known ? std::uint16_t(std::lround(values[i] + 1.0F)) : std::uint16_t{255};
   }
   array.blob = add(coded(levels, rows, columns, 8, 1));
   return array;

@@ -97,7 +97,7 @@ Json to_json(const Judgement& j) {
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {
   Json times = Json::array();
-  for (const int frame : frames) times.push_back(results.times()[static_cast<std::size_t>(frame)]);
+  for (const int frame : frames) times.push_back(results.times()[std::size_t(frame)]);
   return times;
 }
 
@@ -207,11 +207,11 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
 void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_bytes) {
   json["body"] = json["contact"] = nullptr;
   if (!run.results) return;
-  const BodyFrames frames(*run.results, std::max(most_triangles / static_cast<Index>(runs_.size()), always_triangles),
+  const BodyFrames frames(*run.results, std::max(most_triangles / Index(runs_.size()), always_triangles),
                           most_bytes / 4);
   const std::size_t before = arrays_.page_bytes();
   const ContactPart contact = frames.pack_contact(most_bytes / 4, arrays_);
-  const auto all = static_cast<std::size_t>(frames.frame_count());
+  const auto all = std::size_t(frames.frame_count());
   const auto say_frames = [&](const char* of_what, std::size_t there) {
     if (there == all) return;
     note(run, json, fmt::format("{}: {} of the {} frames, to keep the file small", of_what, there, all));
@@ -317,7 +317,7 @@ bool is_report(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string begin(1024, '\0');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<std::size_t>(file.gcount()));
+  begin.resize(std::size_t(file.gcount()));
   return begin.find(report_mark) != std::string::npos;
 }
 

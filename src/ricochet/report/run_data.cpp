@@ -55,7 +55,7 @@ void read_results(RunData& run) {
     }
     if (run.results->times().empty()) run.results.reset();
   }
-  const auto found = static_cast<long>(run.results ? run.results->times().size() : 0);
+  const auto found = long(run.results ? run.results->times().size() : 0);
   if (run.summary.status != "running" && found < run.summary.frames) {
     const auto names = [](const ResultsFormat& each) { return each.file_names(); };
     const bool is_one_file = format != nullptr && format->files.size() == 1;
@@ -85,7 +85,7 @@ RunData read_run(const std::string& directory, bool with_results) {
     check_rows(path(file.c_str()), run.probe_tables.back().second);
   }
   if (const auto step = run.history.columns.find("step"); step != run.history.columns.end()) {
-    const auto last = static_cast<long>(step->second.back());
+    const auto last = long(step->second.back());
     if (run.summary.status == "done" && last < run.summary.steps)
       run.notes.push_back(fmt::format("history.csv ends at step {} of {}: it is truncated", last, run.summary.steps));
   }
@@ -110,7 +110,7 @@ std::size_t common_parts(const std::vector<std::vector<std::string>>& paths) {
   std::size_t count = paths.front().size();
   for (const auto& path : paths) {
     const auto ends = std::mismatch(path.begin(), path.end(), paths.front().begin(), paths.front().end());
-    count = std::min(count, static_cast<std::size_t>(ends.first - path.begin()));
+    count = std::min(count, std::size_t(ends.first - path.begin()));
   }
   return count;
 }

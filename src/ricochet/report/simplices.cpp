@@ -107,11 +107,11 @@ std::vector<Simplex<count>> merged(const Points& nodes, const std::vector<Simple
   std::map<GridBox, Index> first;
   std::vector<Index> representative(static_cast<std::size_t>(nodes.cols()), -1);
   for (const Index node : used_nodes(simplices))
-    representative[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
+    representative[std::size_t(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
   std::vector<Simplex<count>> result;
   std::set<std::array<Index, count>> added;
   for (Simplex<count> simplex : simplices) {
-    for (Index& corner : simplex.corners) corner = representative[static_cast<std::size_t>(corner)];
+    for (Index& corner : simplex.corners) corner = representative[std::size_t(corner)];
     std::array<Index, count> key = simplex.corners;
     std::ranges::sort(key);
     if (std::adjacent_find(key.begin(), key.end()) != key.end()) continue;
@@ -126,14 +126,14 @@ std::vector<Simplex<count>> merged(const Points& nodes, const std::vector<Simple
 template <std::size_t count>
 Simplices drawn(const Points& nodes, std::vector<Simplex<count>> simplices, Index most, double boxes, double fewer) {
   Simplices result;
-  const auto too_many = [&] { return static_cast<Index>(simplices.size()) > most; };
+  const auto too_many = [&] { return Index(simplices.size()) > most; };
   result.is_thinned = too_many();
   for (const std::vector<Simplex<count>> all = too_many() ? simplices : std::vector<Simplex<count>>{}; too_many();
        boxes *= fewer)
     simplices = merged(nodes, all, boxes);
   result.nodes = spatially_sorted(nodes, used_nodes(simplices));
   const std::vector<int> local = local_numbers(result.nodes, nodes.cols());
-  const auto number = [&local](Index node) { return local[static_cast<std::size_t>(node)]; };
+  const auto number = [&local](Index node) { return local[std::size_t(node)]; };
   // Simplices with close nodes become neighbours in the list.
   const auto first_of = [&](const Simplex<count>& simplex) {
     int least = number(simplex.corners[0]);
@@ -143,7 +143,7 @@ Simplices drawn(const Points& nodes, std::vector<Simplex<count>> simplices, Inde
   std::ranges::stable_sort(simplices, [&](const auto& a, const auto& b) { return first_of(a) < first_of(b); });
   for (const Simplex<count>& simplex : simplices) {
     for (const Index corner : simplex.corners) result.corners.push_back(number(corner));
-    result.cells.push_back(static_cast<int>(simplex.cell));
+    result.cells.push_back(int(simplex.cell));
     result.sides.push_back(simplex.sides);
   }
   return result;
@@ -155,7 +155,7 @@ Simplices drawn(const Points& nodes, std::vector<Simplex<count>> simplices, Inde
 Simplices make_surface(const Points& nodes, const std::vector<CellBlock>& cells, Index most) {
   const bool plane = dimension(cells.front().shape) == 2;
   return drawn(nodes, plane ? simplices_of_cells<3>(cells, 2) : boundary_triangles(cells), most,
-               16.0 * std::sqrt(static_cast<double>(most)), 0.75);
+               16.0 * std::sqrt(double(most)), 0.75);
 }
 
 /// The number of tetrahedra grows with the cube.
@@ -163,10 +163,8 @@ Simplices make_volume(const Points& nodes, const std::vector<CellBlock>& cells, 
   if (dimension(cells.front().shape) != 3) return {};
   Index count = 0;
   for (const CellBlock& block : cells)
-    count += block.size() *
-             static_cast<Index>(flat_pieces(block.shape, degree_of(block.shape, block.nodes_per_cell)).size());
-  return drawn(nodes, simplices_of_cells<4>(cells, count <= most ? 2 : 1), most,
-               4.0 * std::cbrt(static_cast<double>(most)), 0.8);
+    count += block.size() * Index(flat_pieces(block.shape, degree_of(block.shape, block.nodes_per_cell)).size());
+  return drawn(nodes, simplices_of_cells<4>(cells, count <= most ? 2 : 1), most, 4.0 * std::cbrt(double(most)), 0.8);
 }
 
 }  // namespace ricochet

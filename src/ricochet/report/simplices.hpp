@@ -18,7 +18,7 @@ struct Simplices {
   std::vector<int> sides;
   bool is_thinned = false;  ///< neighbouring nodes were merged
 
-  [[nodiscard]] Index count() const { return static_cast<Index>(cells.size()); }
+  [[nodiscard]] Index count() const { return Index(cells.size()); }
 };
 
 /// Returns the triangles of the whole body in the plane, of its boundary in space. `nodes`: 3 × count. If there are

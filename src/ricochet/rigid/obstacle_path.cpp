@@ -28,7 +28,7 @@ class UniformPath final : public ObstaclePath {
 
 SpaceVector value_of(const std::vector<Expression>& components, double time) {
   SpaceVector result(static_cast<Index>(components.size()));
-  for (Index k = 0; k < result.size(); ++k) result[k] = components[static_cast<std::size_t>(k)](0.0, 0.0, 0.0, time);
+  for (Index k = 0; k < result.size(); ++k) result[k] = components[std::size_t(k)](0.0, 0.0, 0.0, time);
   return result;
 }
 
@@ -55,10 +55,7 @@ class TablePath final : public ObstaclePath {
   [[nodiscard]] SpaceVector rotation(double time) const override { return at(time).tail(values_.rows() - dimension_); }
   [[nodiscard]] bool rotates() const override { return values_.rows() > dimension_; }
   [[nodiscard]] std::string checksum() const override {
-    return Checksum()
-        .add(times_.data(), times_.size())
-        .add(values_.data(), static_cast<std::size_t>(values_.size()))
-        .text();
+    return Checksum().add(times_.data(), times_.size()).add(values_.data(), std::size_t(values_.size())).text();
   }
 
  private:
@@ -67,8 +64,8 @@ class TablePath final : public ObstaclePath {
     const auto after = std::ranges::upper_bound(times_, time);
     if (after == times_.begin()) return values_.col(0);
     if (after == times_.end()) return values_.col(values_.cols() - 1);
-    const auto next = static_cast<Index>(after - times_.begin());
-    const double before = times_[static_cast<std::size_t>(next - 1)];
+    const auto next = Index(after - times_.begin());
+    const double before = times_[std::size_t(next - 1)];
     const double part = (time - before) / (*after - before);
     return (1.0 - part) * values_.col(next - 1) + part * values_.col(next);
   }
@@ -104,7 +101,7 @@ std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, st
 
 std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
   const std::string text = read_input(file, "motion");
-  const std::size_t still = static_cast<std::size_t>(dimension) + 1, with_rotation = dimension == 2 ? 4 : 7;
+  const std::size_t still = std::size_t(dimension) + 1, with_rotation = dimension == 2 ? 4 : 7;
   std::vector<double> times, values;
   std::size_t columns = 0;
   NumberLines lines(file, text, NumberLines::Header::allowed);
@@ -125,7 +122,7 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
   }
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion contains no numbers", file));
   if (dimension == 2 && columns == with_rotation) refuse_length_header(lines, file);
-  const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
+  const auto rows = Index(columns) - 1, count = Index(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
 }
 

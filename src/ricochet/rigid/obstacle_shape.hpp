@@ -101,7 +101,7 @@ using ObstacleRegistration = Registration<ObstacleConstructor>;
 
 // Helpers shared by the files that define shapes.
 [[nodiscard]] inline Vector as_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+  return Eigen::Map<const Vector>(values.data(), Index(values.size()));
 }
 /// Key `side`: "outside" or "inside".
 [[nodiscard]] Key obstacle_side_key(const std::string& doc);

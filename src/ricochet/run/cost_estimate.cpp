@@ -19,7 +19,7 @@ double seconds_of(const Call& call) {
 }
 
 double rows_of_contact(const SemidiscreteProblem& problem, double points) {
-  return (problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0) * points;
+  return (problem.contact.has_friction() ? double(problem.dimension) : 1.0) * points;
 }
 
 /// Returns the time of a dense contact problem: iterations read its matrix, and some factorize it.
@@ -60,7 +60,7 @@ void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, Cos
         solves + dense_seconds(rows_of_contact(problem, points)) + columns + gaps * cost.gap_seconds;
     return repeats_all ? cost.most_iterations * (own + iteration) : own + cost.most_iterations * iteration;
   };
-  const auto points = static_cast<double>(problem.contact.size());
+  const auto points = double(problem.contact.size());
   cost.step_seconds = {cost.least_iterations * (own + solves), seconds(CostRange::part * points), seconds(points)};
 }
 
@@ -68,8 +68,8 @@ void estimate_step(const SemidiscreteProblem& problem, const Scheme& scheme, Cos
 /// factor and copies.
 void estimate_memory(const SemidiscreteProblem& problem, CostEstimate& cost) {
   constexpr double program = 35e6, bytes_per_entry = 45.0;
-  const double entries = static_cast<double>(problem.internal_force->tangent().nonZeros());
-  const auto points = static_cast<double>(problem.contact.size());
+  const double entries = double(problem.internal_force->tangent().nonZeros());
+  const auto points = double(problem.contact.size());
   const double rows = rows_of_contact(problem, points);
   cost.memory.least = program + bytes_per_entry * entries;
   double columns = 0.0;

@@ -18,12 +18,12 @@ constexpr double most_bytes = 200e6;
 /// as long as the steps.
 long usual_frames(long steps, Index dofs) {
   constexpr double least = 10.0, most = 100.0, work_per_frame = 8e4;
-  return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
+  return std::lround(std::min(most, least + double(steps) * double(dofs) / work_per_frame));
 }
 
 /// Returns the number of frames between the first and the last.
 long affordable_frames(const ResultsSize& size) {
-  return std::max(1L, static_cast<long>((most_bytes - size.mesh) / size.frame) - 2);
+  return std::max(1L, long((most_bytes - size.mesh) / size.frame) - 2);
 }
 
 ResultsSize size_of_results(const Case& input, const Model& model) {
@@ -49,11 +49,11 @@ FieldSchedule::FieldSchedule(const Case& input, const Model& model, long steps, 
   } else if (snapshot == nullptr) {
     const long usual = usual_frames(steps, model.sizes.dofs);
     // All ranks must write the same frames.
-    const auto affordable = static_cast<double>(affordable_frames(size_of_results(input, model)));
+    const auto affordable = double(affordable_frames(size_of_results(input, model)));
     const long frames = std::min(usual, std::lround(-model.problem.ranks->maximum(-affordable)));
     is_limited_ = frames < usual;
     if (input.time.adaptive) {
-      interval_ = input.time.end / static_cast<double>(frames);
+      interval_ = input.time.end / double(frames);
     } else {
       every_ = (steps + frames - 1) / frames;
     }
@@ -86,7 +86,7 @@ bool FieldSchedule::includes(const State& state) {
 long FieldSchedule::frames(long steps, double end) const {
   if (interval_ > 0.0) {
     const double all = intervals(end), rest = end - all * interval_;
-    return 1 + static_cast<long>(all) + (rest > 1e-9 * end ? 1 : 0);
+    return 1 + long(all) + (rest > 1e-9 * end ? 1 : 0);
   }
   if (every_ == 0) return 0;
   return 1 + steps / every_ + (steps % every_ != 0 ? 1 : 0);
@@ -104,8 +104,7 @@ OutputEstimate estimate_output(const Case& input, const Model& model) {
     result.results_bytes = size.of(result.frames);
   }
   result.rows = 1 + steps / input.output.history_every.value_or(make_scheme(input.time)->traits().history_every);
-  result.history_bytes =
-      bytes_of_number * static_cast<double>(history_columns(model).size()) * static_cast<double>(result.rows);
+  result.history_bytes = bytes_of_number * double(history_columns(model).size()) * double(result.rows);
   result.is_limited = schedule.is_limited();
   result.is_adaptive = input.time.adaptive;
   result.is_compressed = input.output.compression > 0;

@@ -18,7 +18,7 @@ class NewtonWatch {
   /// become frequent.
   [[nodiscard]] bool enter_step(int iterations, double seconds);
   /// Mean over the steps with very many iterations.
-  [[nodiscard]] double seconds_per_step() const { return seconds_ / static_cast<double>(steps_); }
+  [[nodiscard]] double seconds_per_step() const { return seconds_ / double(steps_); }
   [[nodiscard]] long steps() const { return steps_; }
 
  private:

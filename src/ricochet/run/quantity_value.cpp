@@ -42,20 +42,20 @@ const std::vector<double>& column_of(const HistoryTable& history, const std::str
 }
 
 double value_in_row(const std::vector<double>& column, const Quantity& quantity) {
-  const long rows = static_cast<long>(column.size());
+  const long rows = long(column.size());
   const long row = quantity.row < 0 ? rows + quantity.row : quantity.row;
   if (row < 0 || row >= rows) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("history.{}[{}]: history.csv has {}", quantity.name, quantity.row, counted(rows, "row")));
   }
-  return column[static_cast<std::size_t>(row)];
+  return column[std::size_t(row)];
 }
 
 TimePosition locate_time(const TimeSeries& course, double time, const std::string& column) {
   const std::vector<double>& times = course.times;
   if (times.size() > 1) {
     const auto later = std::upper_bound(times.begin() + 1, times.end() - 1, time);
-    const auto next = static_cast<std::size_t>(later - times.begin());
+    const auto next = std::size_t(later - times.begin());
     const double fraction = (time - times[next - 1]) / (times[next] - times[next - 1]);
     if (std::abs(fraction) <= same_time) return {next - 1};
     if (std::abs(fraction - 1.0) <= same_time) return {next};

@@ -234,7 +234,7 @@ void Recording::describe_bodies(RunSummary& summary) const {
   summary.bodies.clear();
   for (const RigidBody& body : impacts_.bodies()) {
     const std::size_t number = summary.bodies.size();
-    summary.bodies.push_back({body, impacts_.separation(static_cast<int>(number)), body_names_[number]});
+    summary.bodies.push_back({body, impacts_.separation(int(number)), body_names_[number]});
   }
 }
 
@@ -243,9 +243,9 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
   if (peak.cell < 0) return;
   const Body& body = model_.body;
   const CellLocation location = location_of_cell(*body.mesh, peak.cell);
-  const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
+  const auto material = std::size_t(body.cell_material[std::size_t(peak.cell)]);
   PeakStressResult reported = peak;
-  if (model_.global_output) reported.cell = model_.global_output->cell_rows[static_cast<std::size_t>(peak.cell)];
+  if (model_.global_output) reported.cell = model_.global_output->cell_rows[std::size_t(peak.cell)];
   summary.peak_stress = PeakStressDescription{reported,
                                               {location.centre.data(), location.centre.data() + location.centre.size()},
                                               location.tag,

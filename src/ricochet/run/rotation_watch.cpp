@@ -29,7 +29,7 @@ RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t c
     : body_(body), ranks_(ranks), column_(column), limit_(limit_of_rotation(body)) {
   // No rotation exceeds π.
   const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
-  records_.reserve(static_cast<std::size_t>(most) + 3);
+  records_.reserve(std::size_t(most) + 3);
 }
 
 void RotationWatch::persist(const SnapshotVisitor& visit) {

@@ -60,7 +60,7 @@ Run::Run(Session& session, const RunOptions& options)
       ranks_(*options.ranks),
       directory_(options.output_directory, *options.ranks),
       steps_(session.steps()),
-      reading_warning_count_(static_cast<std::ptrdiff_t>(session.warnings().size())),
+      reading_warning_count_(std::ptrdiff_t(session.warnings().size())),
       at_interruption_([this] { end_on_interruption(); }) {}
 
 void Run::begin() {
@@ -110,7 +110,7 @@ bool Run::is_complete() {
   if (input_.time.adaptive) {
     if (input_.time.end < summary_.end_time) refuse_earlier_end(summary_.end_time);
   } else if (steps_ < summary_.steps) {
-    refuse_earlier_end(static_cast<double>(summary_.steps) * input_.time.step);
+    refuse_earlier_end(double(summary_.steps) * input_.time.step);
   }
   if (summary_.status != "done") return false;
   was_complete_ = true;
@@ -135,7 +135,7 @@ void Run::check_snapshot() {
     require_same_case(input_, *snapshot_, options_.output_directory);
     const double reached = snapshot_->real("state.time");
     if (input_.time.adaptive ? input_.time.end < reached - input_.time.smallest
-                             : steps_ < static_cast<long>(snapshot_->integer("state.step")))
+                             : steps_ < long(snapshot_->integer("state.step")))
       refuse_earlier_end(reached);
     if (ranks_.is_first()) require_same_files(options_.output_directory, *snapshot_);
     if (!options_.resume_load && Session::is_steered(*snapshot_)) {
@@ -181,7 +181,7 @@ void Run::begin_session() {
   times_.add_build(build);
   check_expected_quantities(input_, session_.model());
   report_size();
-  const auto built = static_cast<std::ptrdiff_t>(session_.warnings().size());
+  const auto built = std::ptrdiff_t(session_.warnings().size());
   Timer timer;
   begin_simulation();
   times_.add_start(timer.seconds(), session_.simulation().methods());
@@ -307,7 +307,7 @@ bool Run::take_step() {
 bool Run::advance() {
   // A signal that any rank has received counts.
   const int own_signal = options_.stop_signal ? options_.stop_signal() : 0;
-  if (const int signal = static_cast<int>(ranks_.maximum(own_signal)); signal != 0) {
+  if (const int signal = int(ranks_.maximum(own_signal)); signal != 0) {
     stop(signal);
     return false;
   }
@@ -369,8 +369,8 @@ void Run::report_size() const {
   const Model& model = session_.model();
   const bool is_large = model.sizes.dofs >= large_body;
   if (is_large) {
-    const double rows = (model.problem.contact.has_friction() ? model.mesh.dimension : 1) *
-                        static_cast<double>(model.sizes.contact_points);
+    const double rows =
+        (model.problem.contact.has_friction() ? model.mesh.dimension : 1) * double(model.sizes.contact_points);
     log::info(
         fmt::format("{}, {}; preparing the steps, which need about {} of memory with iterations and more with a "
                     "factorization, and {} if all contact points are pressed",

@@ -32,8 +32,8 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   for (const std::string& work : column_names_of(ColumnGroup::work)) works_.push_back(column_index(columns, work));
   const auto of_bodies = [](const std::string& column) { return column.starts_with("momentum."); };
   const auto first = std::ranges::find_if(columns, of_bodies);
-  body_momenta_ = static_cast<std::size_t>(first - columns.begin());
-  body_momenta_end_ = body_momenta_ + static_cast<std::size_t>(std::count_if(first, columns.end(), of_bodies));
+  body_momenta_ = std::size_t(first - columns.begin());
+  body_momenta_end_ = body_momenta_ + std::size_t(std::count_if(first, columns.end(), of_bodies));
   Vector inertia;
   model.problem.mass.multiply(Vector::Ones(model.problem.mass.size()), inertia);
   mass_ = model.problem.ranks->sum(inertia.sum()) / model.problem.dimension;
@@ -65,9 +65,9 @@ void RunChecks::persist(const SnapshotVisitor& visit) {
 
 double RunChecks::size_of_momenta(const std::vector<double>& row, const Resultant& all) const {
   double sum = 0.0;
-  const auto d = static_cast<std::size_t>(model_.problem.dimension);
+  const auto d = std::size_t(model_.problem.dimension);
   for (std::size_t first = body_momenta_; first + d <= body_momenta_end_; first += d)
-    sum += Eigen::Map<const Vector>(row.data() + first, static_cast<Index>(d)).norm();
+    sum += Eigen::Map<const Vector>(row.data() + first, Index(d)).norm();
   return std::max(sum, all.force.norm());
 }
 
@@ -79,12 +79,12 @@ double RunChecks::largest_limit() const {
 
 Resultant RunChecks::momentum(const std::vector<double>& row) const {
   Resultant result;
-  const auto d = static_cast<std::size_t>(model_.problem.dimension);
-  for (std::size_t k = 0; k < d; ++k) result.force[static_cast<Index>(k)] = row[momentum_column_ + k];
+  const auto d = std::size_t(model_.problem.dimension);
+  for (std::size_t k = 0; k < d; ++k) result.force[Index(k)] = row[momentum_column_ + k];
   if (d == 2) {
     result.moment[2] = row[angular_column_];
   } else {
-    for (std::size_t k = 0; k < d; ++k) result.moment[static_cast<Index>(k)] = row[angular_column_ + k];
+    for (std::size_t k = 0; k < d; ++k) result.moment[Index(k)] = row[angular_column_ + k];
   }
   return result;
 }

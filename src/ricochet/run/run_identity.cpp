@@ -38,9 +38,9 @@ std::map<std::string, std::string> obstacle_checksums(const Case& input, const M
 /// Returns the checksum of products with a fixed vector, which detects any difference in the rounding of the operators.
 std::string operator_checksum(const SemidiscreteProblem& problem) {
   Vector values(problem.dof_count()), product;
-  for (Index i = 0; i < values.size(); ++i) values[i] = 1.0 / static_cast<double>(i + 1);
+  for (Index i = 0; i < values.size(); ++i) values[i] = 1.0 / double(i + 1);
   Checksum sum;
-  const auto add = [&sum](const Vector& v) { sum.add(v.data(), static_cast<std::size_t>(v.size())); };
+  const auto add = [&sum](const Vector& v) { sum.add(v.data(), std::size_t(v.size())); };
   problem.mass.multiply(values, product);
   add(product);
   problem.internal_force->strain_force(Vector::Zero(values.size()), values, product);
@@ -67,7 +67,7 @@ std::vector<MeshChecksum> of_whole(const Mesh& mesh) {
     groups.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
     groups.add(group.members.data(), group.members.size());
   }
-  const Checksum nodes = Checksum().add(mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size()));
+  const Checksum nodes = Checksum().add(mesh.nodes.data(), std::size_t(mesh.nodes.size()));
   return {{"boundary facets", "", facets.text()},
           {"cells", "", cells.text()},
           {"groups", "", groups.text()},
@@ -92,7 +92,7 @@ class PartChecksums {
     add("cells", of_nodes(mesh_.cells, part_.cells));
     add("groups", of_groups());
     add("nodes", Checksum().add(mesh_.nodes.data() + part_.first_node * mesh_.nodes.rows(),
-                                static_cast<std::size_t>(part_.node_count * mesh_.nodes.rows())));
+                                std::size_t(part_.node_count * mesh_.nodes.rows())));
   }
 
  private:

@@ -115,7 +115,7 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
 void judge_unsettled(const RunSummary& summary) {
   for (const UnsettledContact& contact : summary.unsettled) {
     if (contact.share <= UnsettledContact::doubtful) continue;
-    const ContactDescription& pair = summary.contacts[static_cast<std::size_t>(contact.contact)];
+    const ContactDescription& pair = summary.contacts[std::size_t(contact.contact)];
     log::warning(fmt::format(
         "the force of the contact of {} is in doubt: up to {:.3g} % of it is at stake where frozen steps have left {} "
         "of up to {:.3g}, in {} from t = {:.6g} on",
@@ -126,7 +126,7 @@ void judge_unsettled(const RunSummary& summary) {
 
 void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem, const Body& body) {
   constexpr long many = 30;
-  const long impacts = static_cast<long>(summary.impacts.size()) + summary.impacts_left_out;
+  const long impacts = long(summary.impacts.size()) + summary.impacts_left_out;
   if (impacts <= many || !problem.contact.has_friction() || problem.has_damping()) return;
   const std::vector<double> times = cell_crossing_times(body);
   log::warning(

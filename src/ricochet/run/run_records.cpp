@@ -121,7 +121,7 @@ void Run::end_on_interruption() {
                                 before_step_ ? "continues from the state before that step"
                                              : "continues from the last checkpoint, if there is one");
   if (before_step_) {
-    summary.steps = summary.checkpoint_step = static_cast<long>(before_step_->integer("state.step"));
+    summary.steps = summary.checkpoint_step = long(before_step_->integer("state.step"));
     ricochet::write_checkpoint(options_.output_directory, summary.checkpoint_step, *before_step_);
   }
   write_summary(summary_path(), summary);
@@ -181,10 +181,10 @@ void Run::describe_progress(RunSummary& summary) {
   summary.steered = session_.is_steered();
   summary.factor_entries = session_.simulation().factor_entries();
   const IterationCounts counts = session_.simulation().iteration_counts();
-  const auto new_steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
+  const auto new_steps = double(std::max(1L, session_.simulation().state().step - first_step_));
   if (counts.schwarz_iterations > 0)
-    summary.iterations = IterationReport{static_cast<double>(counts.schwarz_iterations) / new_steps,
-                                         static_cast<double>(counts.gradients) / new_steps};
+    summary.iterations =
+        IterationReport{double(counts.schwarz_iterations) / new_steps, double(counts.gradients) / new_steps};
   summary.critical_step = session_.scheme().critical_step();
   summary.steps = session_.simulation().state().step;
   if (const StepControl* const control = session_.simulation().control()) {
@@ -197,7 +197,7 @@ void Run::describe_progress(RunSummary& summary) {
   summary.timings = times.phases();
   summary.processor_seconds = times.processor();
   summary.peak_memory = peak_memory();
-  summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
+  summary.time_per_step = summary.steps > 0 ? times.steps / double(summary.steps) : 0.0;
   gather_from_ranks(summary);
   summary.warnings = session_.warnings();
 }
@@ -208,11 +208,11 @@ Traffic Run::traffic() const {
 
 void Run::describe_processes(RunSummary& summary) const {
   const Traffic now = traffic();
-  const auto steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
+  const auto steps = double(std::max(1L, session_.simulation().state().step - first_step_));
   const auto most_per_step = [&](std::int64_t after, std::int64_t before) {
-    return ranks_.maximum(static_cast<double>(after - before)) / steps;
+    return ranks_.maximum(double(after - before)) / steps;
   };
-  const auto dofs = static_cast<double>(session_.model().problem.dof_count());
+  const auto dofs = double(session_.model().problem.dof_count());
   summary.processes = ProcessReport{ranks_.size(),
                                     std::lround(ranks_.minimum(dofs)),
                                     std::lround(ranks_.maximum(dofs)),
@@ -223,9 +223,9 @@ void Run::describe_processes(RunSummary& summary) const {
 
 /// Sums time and memory over all ranks; contact may be solved on other ranks than the first.
 void Run::add_work_of_ranks(RunSummary& summary) const {
-  std::array<double, 2> sums{static_cast<double>(summary.factor_entries), summary.processor_seconds};
+  std::array<double, 2> sums{double(summary.factor_entries), summary.processor_seconds};
   ranks_.sum(sums);
-  summary.factor_entries = static_cast<std::size_t>(sums[0]);
+  summary.factor_entries = std::size_t(sums[0]);
   summary.processor_seconds = sums[1];
   summary.peak_memory = ranks_.maximum(summary.peak_memory);
   for (auto& [phase, seconds] : summary.timings) {

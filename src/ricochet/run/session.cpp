@@ -139,8 +139,7 @@ void Session::set_load(const Vector& force) {
   }
   *load_ = force;
   // Tied nodes have no equations: loads on them act on the nodes that they follow.
-  if (built.problem.tied != nullptr)
-    built.problem.tied->condense_load(*load_, static_cast<int>(built.problem.dimension));
+  if (built.problem.tied != nullptr) built.problem.tied->condense_load(*load_, int(built.problem.dimension));
 }
 
 void Session::set_velocity(const Vector& velocity) {
@@ -191,7 +190,7 @@ void Session::steer_from_start(ObstacleSection& section) {
 }
 
 SteeredPath& Session::steered_path(const std::string& obstacle) {
-  const auto index = static_cast<std::size_t>(&section_of_obstacle(obstacle) - input_.obstacles.data());
+  const auto index = std::size_t(&section_of_obstacle(obstacle) - input_.obstacles.data());
   return *model().obstacles[index]->steered_path();
 }
 

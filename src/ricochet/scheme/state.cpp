@@ -75,7 +75,7 @@ void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, S
   visit("acceleration", state.acceleration, dofs);
   visit("internal_strain", state.internal_strain, viscous != nullptr ? viscous->internal_size() : 0);
   persist(visit, problem, state.forces);
-  visit("contact_status", state.contact_status, {0, static_cast<std::int64_t>(ContactStatus::slip)}, points);
+  visit("contact_status", state.contact_status, {0, std::int64_t(ContactStatus::slip)}, points);
   ObstacleMotion& increment = state.obstacle_increment;
   visit("obstacle_increment.normal", increment.normal, points, 0);
   visit("obstacle_increment.tangential", increment.tangential, tangents, 0);

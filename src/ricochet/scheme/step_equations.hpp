@@ -29,7 +29,7 @@ class StepEquations {
   void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Vector& prescribed) {
     problem.supports.values(time, prescribed);
     for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      const Index dof = problem.supports.dofs()[std::size_t(i)];
       prescribed[i] = increment(dof, prescribed[i]);
     }
   }

@@ -95,7 +95,7 @@ void Simulation::persist_levels(const SnapshotVisitor& visit) {
   visit("levels", numbers, {0, control_ ? control_->deepest() : deepest_cut});
   visit("level", current);
   for (const int number : numbers) {
-    const SnapshotVisitor saved = visit.part("solver").part(static_cast<std::size_t>(number));
+    const SnapshotVisitor saved = visit.part("solver").part(std::size_t(number));
     if (visit.loads()) {
       if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
       // The saved methods are kept even if others would now be chosen for the remaining steps: they change the bits.
@@ -180,7 +180,7 @@ void Simulation::set_up_tunnelling_watches() {
     if (node_count > 1) points[obstacle].push_back(point);
   }
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
-    const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];
+    const Obstacle* const obstacle = problem_.obstacles[std::size_t(contact.node_pair[i])];
     if (obstacle != nullptr && !obstacle->shape().is_flat()) nodes[obstacle].push_back(contact.nodes[i]);
   }
   // The order is that of the case, as the order of addresses in memory is arbitrary.
@@ -328,7 +328,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
                   fmt::format("{}; parts of the step as short as 1/{} of it were tried", problem.what(), whole));
     }
     done += whole >> level;
-    state_.time = start.time + whole_step_ * static_cast<double>(done) / static_cast<double>(whole);
+    state_.time = start.time + whole_step_ * double(done) / double(whole);
     end_part(each_part);
     while (level > 1 && fits(done, level - 1)) --level;
   }
@@ -355,7 +355,7 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
     }
   }
   state_.step += 1;
-  state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * whole_step_;
+  state_.time = control_ ? control_->time() : double(state_.step) * whole_step_;
   if (!in_parts) end_part(each_part);
   if (control_) control_->watch(energy, problem_.ranks->sum(account_->method_energy(state_)));
 }

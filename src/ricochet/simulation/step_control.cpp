@@ -32,7 +32,7 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
   if (!(halvings <= most_levels))
     refuse(fmt::format("the smallest step, {:.6g}, is more than 2^{} times shorter than the largest, {:.6g}",
                        options.smallest, most_levels, options.largest));
-  deepest_ = static_cast<int>(halvings);
+  deepest_ = int(halvings);
   // An end that is a whole number of smallest steps up to rounding is taken as that number.
   const double ticks =
       std::ceil(options.end / step_of(deepest_) - std::min(1e-12 * options.end / step_of(deepest_), 0.5));
@@ -40,7 +40,7 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
     refuse(fmt::format(
         "{:.3g} of the smallest step, {:.6g}, are needed to reach the end, {:.6g}; at most {:.0e} are possible", ticks,
         options.smallest, options.end, most_ticks));
-  end_ticks_ = std::max(std::int64_t{1}, static_cast<std::int64_t>(ticks));
+  end_ticks_ = std::max(std::int64_t{1}, std::int64_t(ticks));
   find_inertia();
 }
 
@@ -104,7 +104,7 @@ bool StepControl::accept(const State& before, const State& after, double energy)
     if (level_ < deepest_) {
       ++counts_.refused;
       const double halvings = std::isfinite(error_) ? std::ceil(std::log2(error_ / aim) / order) : 3.0;
-      level_ = required_level_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
+      level_ = required_level_ = std::min(deepest_, level_ + std::clamp(int(halvings), 1, 3));
       finest_ = std::max(finest_, required_level_);
       // Growth that fails is retried ever more rarely.
       backoff_ = grown ? std::min(2 * backoff_, most_patience) : least_patience;
@@ -159,7 +159,7 @@ void StepControl::count_step() {
   }
   ++stretch_steps_;
   if (stretch_steps_ != many_steps && stretch_steps_ != most_steps) return;
-  const double gone = static_cast<double>(ticks_ - stretch_ticks_) * step_of(deepest_);
+  const double gone = double(ticks_ - stretch_ticks_) * step_of(deepest_);
   const std::string pace = fmt::format(
       "t = {:.9g}: the last {} steps have advanced by only {:.3g}, a fraction of time.largest = {:g}, and the last has "
       "an error of {:.2g} times time.tolerance: the motion has jumps that no step length resolves, or vibrations that "
@@ -175,7 +175,7 @@ void StepControl::count_step() {
   log::warning(
       fmt::format("{}; at this rate the run needs {:.2g} steps, each with a row of history.csv, and it ends with an "
                   "error after {} of them; {}",
-                  pace, static_cast<double>(stretch_steps_) * options_.end / gone, most_steps, advice));
+                  pace, double(stretch_steps_) * options_.end / gone, most_steps, advice));
 }
 
 bool StepControl::shorten() {

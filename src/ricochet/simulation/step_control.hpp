@@ -62,7 +62,7 @@ class StepControl {
   [[nodiscard]] bool at_end() const { return ticks_ >= end_ticks_; }
   /// Returns whether the next step is shorter only because the run ends.
   [[nodiscard]] bool is_shortened_by_end() const { return !at_end() && level_ > required_level_; }
-  [[nodiscard]] double time() const { return static_cast<double>(ticks_) * step_of(deepest_); }
+  [[nodiscard]] double time() const { return double(ticks_) * step_of(deepest_); }
   /// Level k of the next step, and its length.
   [[nodiscard]] int level() const { return level_; }
   [[nodiscard]] double step() const { return step_of(level_); }

@@ -117,14 +117,14 @@ IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const 
   // nodes.
   const double largest_eigenvalue = d + 1.0;
   const double condition = std::max(1.0, largest_eigenvalue * softness(problem, coefficients, stiffness));
-  const auto nodes = static_cast<double>(problem.nodes.cols());
-  const auto blocks = static_cast<double>(stiffness.pattern().column.size());
+  const auto nodes = double(problem.nodes.cols());
+  const auto blocks = double(stiffness.pattern().column.size());
   IterationEstimate result;
   result.iterations = 0.5 * std::sqrt(condition) * std::log(2.0 / tolerance);
   const double product = blocks * (8.0 * d * d + 4.0);
   // With a mass that couples many more nodes than K (stage_product.hpp) iterations are in double precision.
   if (keeps_mass_apart(problem, stiffness)) {
-    result.bytes = product + static_cast<double>(problem.mass.bytes()) + 8.0 * nodes * d * (d + vectors_per_iteration);
+    result.bytes = product + double(problem.mass.bytes()) + 8.0 * nodes * d * (d + vectors_per_iteration);
   } else {
     result.bytes = blocks * (4.0 * d * d + 4.0) + 4.0 * nodes * d * single_vectors_per_iteration +
                    double_products * product / result.iterations;
@@ -162,7 +162,7 @@ ChosenMethod choose_method(const SparseCholesky::Prediction& predicted, const Op
   } else if (coefficients.mass == 0.0) {
     chosen.reason = "the operator has no inertia, without which iterations converge badly";
   } else {
-    compare(predicted, options.solves > 0 ? static_cast<double>(options.solves) : many_solves, iterations(), chosen);
+    compare(predicted, options.solves > 0 ? double(options.solves) : many_solves, iterations(), chosen);
     if (options.solves == 0) chosen.reason += "; the actual number of solves is unknown";
   }
   return chosen;

@@ -110,11 +110,11 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
     subdomains_ =
         std::make_unique<Subdomains>(problem, coefficients, solved_, product_, neighbourhood_, shared, condensed);
   }
-  const auto count = static_cast<std::size_t>(problem.dof_count());
+  const auto count = std::size_t(problem.dof_count());
   solved_.assign(count, 0);
-  for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[static_cast<std::size_t>(dof)] = 1;
+  for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[std::size_t(dof)] = 1;
   for (std::size_t dof = 0; dof < count; ++dof) {
-    if (solved_[dof] == 0) unsolved_.push_back(static_cast<int>(dof));
+    if (solved_[dof] == 0) unsolved_.push_back(int(dof));
   }
   if (options.preconditioner != "auto") kind_ = options.preconditioner;
   refactorize(Vector());
@@ -366,8 +366,7 @@ void IterativeStage::solve(const LinearStage& stage, StageSolution& solution) {
 
 void IterativeStage::end(const LinearStage& stage, StageSolution& solution) {
   if (counts_.gradients - gradients_before_ > iterations_for_multigrid) switch_to_multigrid();
-  candidates_.update_history(stage.conditions, motion_,
-                             static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
+  candidates_.update_history(stage.conditions, motion_, std::size_t((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;
   has_previous_ = true;
@@ -378,8 +377,7 @@ void IterativeStage::end(const LinearStage& stage, StageSolution& solution) {
   product_.multiply(guess_, work_);
   work_ -= stage.right_hand_side.force;
   stage.rows.add_force(-solution.acting_normal(), -solution.acting_tangential(), work_);
-  for (std::size_t i = 0; i < supported.size(); ++i)
-    solution.support_reaction[static_cast<Index>(i)] = work_[supported[i]];
+  for (std::size_t i = 0; i < supported.size(); ++i) solution.support_reaction[Index(i)] = work_[supported[i]];
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
   }
   stage.right_hand_side.prescribed = right_hand_side_.prescribed;
   for (Index i = 0; i < problem_.supports.size(); ++i)
-    stage.right_hand_side.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+    stage.right_hand_side.prescribed[i] -= total_[problem_.supports.dofs()[std::size_t(i)]];
   if (stage.motion) {
     stage.motion->move_origin(*motion_, conditions_, total_);
     zero_motion_.setZero(total_.size());

@@ -163,7 +163,7 @@ class StagesStepSolver final : public StepSolver {
   }
   [[nodiscard]] FactoredStage* condensed_stage_of(const OperatorCoefficients& coefficients) const {
     const int number = coefficients.condensed_operator;
-    return number >= 0 ? stages_.at(static_cast<std::size_t>(number))->factored() : nullptr;
+    return number >= 0 ? stages_.at(std::size_t(number))->factored() : nullptr;
   }
   /// Adds a stage of a body on several ranks, which has a factor only on the dofs of contact nodes.
   void add_divided_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -232,8 +232,7 @@ class StagesStepSolver final : public StepSolver {
 std::vector<SolverMethod> saved_methods(const SnapshotVisitor& saved,
                                         const std::vector<OperatorCoefficients>& operators) {
   std::vector<SolverMethod> methods;
-  saved(methods_entry, methods,
-        {static_cast<std::int64_t>(SolverMethod::direct), static_cast<std::int64_t>(SolverMethod::iterative)});
+  saved(methods_entry, methods, {std::int64_t(SolverMethod::direct), std::int64_t(SolverMethod::iterative)});
   saved.require(methods.size() == operators.size(), methods_entry, "belongs to another number of operators");
   for (std::size_t i = 0; i < methods.size(); ++i)
     saved.require(operators[i].dofs != StageDofs::contact || methods[i] == SolverMethod::direct, methods_entry,

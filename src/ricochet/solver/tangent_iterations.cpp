@@ -16,7 +16,7 @@ TangentIterations::TangentIterations(const SemidiscreteProblem& problem, const C
   if (!problem.ranks->are_several()) return;
   Vector is_counted(static_cast<Index>(problem.contact_dofs.size()));
   for (Index i = 0; i < is_counted.size(); ++i) {
-    const Index node = problem.contact_dofs[static_cast<std::size_t>(i)] / problem.dimension;
+    const Index node = problem.contact_dofs[std::size_t(i)] / problem.dimension;
     is_counted[i] = problem.ranks->is_owned(node) ? 1.0 : 0.0;
   }
   acceleration_.distribute(*problem.ranks, std::move(is_counted));
@@ -82,7 +82,7 @@ void TangentIterations::linearize_at(const Vector& increment, bool accelerate) {
     linearized_at_ = increment;
     return;
   }
-  point_.resize(static_cast<Index>(problem_.contact_dofs.size()));
+  point_.resize(Index(problem_.contact_dofs.size()));
   image_.resize(point_.size());
   problem_.gather_contact(linearized_at_, point_);
   problem_.gather_contact(increment, image_);

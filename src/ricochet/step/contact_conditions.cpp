@@ -40,7 +40,7 @@ void update_rows(const SemidiscreteProblem& problem, const Vector& displacement,
 
 /// Makes every point eligible except those whose condition another point enforces.
 void set_eligible(const SemidiscreteProblem& problem, Stage& stage) {
-  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  stage.conditions.eligible.assign(std::size_t(problem.contact.size()), 1);
   if (problem.contact.follows_motion()) problem.contact.geometry->deactivate_points(stage.conditions.eligible);
 }
 
@@ -147,7 +147,7 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   for (Index i = 0; i < problem.contact.size(); ++i) {
     const bool touches =
         stage.conditions.gap.offset[i] <= stage.rows->gap_rounding[i] + stage.conditions.gap.rounding[i];
-    if (!touches) stage.conditions.eligible[static_cast<std::size_t>(i)] = 0;
+    if (!touches) stage.conditions.eligible[std::size_t(i)] = 0;
   }
   problem.trace_rounding(velocity, stage.conditions.gap.offset);
   stage.conditions.gap.rounding = stage.conditions.gap.rounding / step + stage.conditions.gap.offset;
@@ -193,7 +193,7 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
   constexpr double none = -std::numeric_limits<double>::infinity();
   LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
-    if (stage.conditions.eligible[static_cast<std::size_t>(i)] == 0) continue;
+    if (stage.conditions.eligible[std::size_t(i)] == 0) continue;
     // The residual of the linear condition is the solver's and is there for any rows; it is not a linearization error.
     const double beside =
         std::abs(gap[i] - (stage.conditions.gap.offset[i] + stage.conditions.gap.factor * motion.work.gap_change[i]));

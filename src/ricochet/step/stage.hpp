@@ -193,7 +193,7 @@ struct StageSolution : Reactions {
   void open_all(Index points, Index tangents_per_point) {
     normal_reaction.setZero(points);
     tangential_reaction.setZero(points * tangents_per_point);
-    contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+    contact_status.assign(std::size_t(points), ContactStatus::open);
     clear_mean();
     iterations = 0;
   }

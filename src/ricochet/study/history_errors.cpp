@@ -41,7 +41,7 @@ class TimeFunction {
     const auto above = std::ranges::upper_bound(times_, shifted_time);
     if (above == times_.begin()) return values_.front();
     if (above == times_.end()) return values_.back();
-    const auto i = static_cast<std::size_t>(above - times_.begin());
+    const auto i = std::size_t(above - times_.begin());
     const double part = (shifted_time - times_[i - 1]) / (times_[i] - times_[i - 1]);
     return (1.0 - part) * values_[i - 1] + part * values_[i];
   }

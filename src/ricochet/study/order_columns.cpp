@@ -22,7 +22,7 @@ std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::
   std::vector<std::size_t> at = study.runs[run].planned.at;
   if (at[axis]-- == 0) return std::nullopt;
   const auto found = std::ranges::find_if(study.runs, [&](const StudyRun& other) { return other.planned.at == at; });
-  return static_cast<std::size_t>(found - study.runs.begin());
+  return std::size_t(found - study.runs.begin());
 }
 
 /// Returns the orders for column c of errors, run by run.
@@ -63,7 +63,7 @@ bool is_biased(const StudyQuestions& questions) {
 
 std::vector<bool> find_stagnant_orders(const std::string& key, const std::vector<double>& orders) {
   const auto positive = std::ranges::count_if(orders, [](double order) { return order > 0.0; });
-  const bool smaller_is_finer = key == "time.step" || 2 * positive >= static_cast<std::ptrdiff_t>(orders.size());
+  const bool smaller_is_finer = key == "time.step" || 2 * positive >= std::ptrdiff_t(orders.size());
   std::vector<bool> idle;
   for (const double order : orders) idle.push_back((smaller_is_finer ? order : -order) < least_order);
   return idle;
@@ -79,7 +79,7 @@ void add_order_columns(const Study& study, ResultTable& table, std::vector<std::
     const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
     const std::vector<std::optional<double>> orders = orders_of(study, table, c);
     any = any || std::ranges::any_of(orders, [](const auto& order) { return order.has_value(); });
-    const auto behind = static_cast<std::ptrdiff_t>(c + 1);
+    const auto behind = std::ptrdiff_t(c + 1);
     table.columns.insert(table.columns.begin() + behind, {order_prefix + name, true, 3, 2});
     for (std::size_t run = 0; run < table.rows.size(); ++run)
       table.rows[run].insert(table.rows[run].begin() + behind, orders[run] ? TableCell(*orders[run]) : TableCell());

@@ -181,7 +181,7 @@ KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
     const std::vector<std::string>& keys = plan.axes[a].keys;
     const auto found = std::ranges::find(keys, key);
-    if (found != keys.end()) return {a, static_cast<std::size_t>(found - keys.begin())};
+    if (found != keys.end()) return {a, std::size_t(found - keys.begin())};
   }
   throw Error(ErrorKind::usage,
               fmt::format("{}: \"{}\" does not vary; keys that vary: {}", option, key, join_names(varied_keys(plan))));

@@ -50,7 +50,7 @@ TableCell largest_force_of(const RunSummary& s) {
 
 TableCell exit_status_of(const RunState& state) {
   const std::optional<int> status = state.final_status();
-  return status ? TableCell(static_cast<long>(*status)) : TableCell();
+  return status ? TableCell(long(*status)) : TableCell();
 }
 
 using Summary = const RunSummary&;
@@ -67,8 +67,7 @@ const std::vector<ResultColumn>& all_columns() {
       of_summary({"lost_by_method", true, 3}, [](Summary s) { return TableCell(s.method_energy.lost); }),
       of_summary({"created_by_method", true, 3}, [](Summary s) { return TableCell(s.method_energy.created); }),
       of_summary({"max_penetration", true, 3}, [](Summary s) { return TableCell(s.deepest_penetration()); }),
-      of_summary({"impacts", false},
-                 [](Summary s) { return TableCell(static_cast<long>(s.impacts.size()) + s.impacts_left_out); }),
+      of_summary({"impacts", false}, [](Summary s) { return TableCell(long(s.impacts.size()) + s.impacts_left_out); }),
       of_summary({"restitution", true, 4, 1}, restitution_of),
       of_summary({"largest_force", true, 4, 1}, largest_force_of),
       of_summary({"peak_von_mises", true, 4, 1},
@@ -78,7 +77,7 @@ const std::vector<ResultColumn>& all_columns() {
       of_summary({"peak_von_mises_x", false}, [](Summary s) { return peak_coordinate(s, 0); }),
       of_summary({"peak_von_mises_y", false}, [](Summary s) { return peak_coordinate(s, 1); }),
       of_summary({"peak_von_mises_z", false}, [](Summary s) { return peak_coordinate(s, 2); }),
-      of_summary({"warnings", false}, [](Summary s) { return TableCell(static_cast<long>(s.warnings.size())); }),
+      of_summary({"warnings", false}, [](Summary s) { return TableCell(long(s.warnings.size())); }),
       of_summary({"doubts", true, 4, 1}, [](Summary s) { return TableCell(doubts_of(s)); })};
   return columns;
 }

@@ -97,13 +97,13 @@ void StudyProgress::watch() {
 }
 
 double StudyProgress::runs_done() const {
-  auto done = static_cast<double>(ended_);
+  auto done = double(ended_);
   for (const std::string& directory : running_) done += part_done(directory);
   return done;
 }
 
 std::string StudyProgress::time_left(double done) const {
-  const double here = done - static_cast<double>(ended_before_), left = static_cast<double>(runs_) - done;
+  const double here = done - double(ended_before_), left = double(runs_) - done;
   if (!(here > 0.0 && left > 0.0)) return "";
   // The mean time per run includes the number of jobs, which stays the same.
   return fmt::format(", {} left", duration_text(timer_.seconds() / here * left));
@@ -113,7 +113,7 @@ void StudyProgress::draw() {
   last_drawn_ = timer_.seconds();
   const double done = runs_done();
   constexpr int width = 30;
-  const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
+  const int filled = int(width * done / double(runs_));
   fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} running  {} elapsed{}\033[K", "", filled, "", width - filled,
              ended_, runs_, running_.size(), duration_text(last_drawn_), time_left(done));
   std::fflush(stderr);

@@ -17,9 +17,8 @@ namespace ricochet {
 
 namespace {
 
-constexpr int refused_status = static_cast<int>(ErrorKind::invalid_input),
-              failed_status = static_cast<int>(ErrorKind::not_converged),
-              unexpected_status = static_cast<int>(ErrorKind::expectation);
+constexpr int refused_status = int(ErrorKind::invalid_input), failed_status = int(ErrorKind::not_converged),
+              unexpected_status = int(ErrorKind::expectation);
 
 std::string exit_status_path(const std::string& directory) {
   return (std::filesystem::path(directory) / exit_status_file).string();

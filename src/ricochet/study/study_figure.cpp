@@ -224,7 +224,7 @@ void describe_orders(const std::vector<StudyLine>& lines, const std::string& key
     last.push_back(ends_idle ? "floor" : orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
     if (line.x.front() < line.x.back()) std::ranges::reverse(orders);
     const std::vector<bool> idle = find_stagnant_orders(key, orders);
-    const auto floor = static_cast<std::size_t>(std::ranges::find(idle, true) - idle.begin());
+    const auto floor = std::size_t(std::ranges::find(idle, true) - idle.begin());
     if (floor < orders.size()) orders.resize(floor > 0 ? floor - 1 : 0);
     for (const double order : orders) {
       if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
@@ -263,7 +263,7 @@ std::vector<double> axis_positions(const ResultTable& table, StudyPanel& panel, 
     const std::string text = text_of(row[column]);
     all_numbers = all_numbers && (text.empty() || number_in(text));
     const auto category = std::ranges::find(categories, text);
-    indices.push_back(static_cast<double>(category - categories.begin()));
+    indices.push_back(double(category - categories.begin()));
     numbers.push_back(number_of(row[column]));
     if (category == categories.end()) categories.push_back(text);
   }

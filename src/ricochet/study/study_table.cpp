@@ -206,7 +206,7 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
     const auto step = [&](const auto& value) { return step_of(key, number_in(value[position.key]).value_or(0.0)); };
     const auto finest =
         std::ranges::min_element(values, [&](const auto& a, const auto& b) { return step(a) < step(b); });
-    chosen = static_cast<std::size_t>(finest - values.begin());
+    chosen = std::size_t(finest - values.begin());
   }
   std::vector<std::size_t> at = study_.runs[run].planned.at;
   at[position.axis] = chosen;
@@ -267,7 +267,7 @@ void StudyTableMaker::add_messages() {
     const RunState& state = states_[run];
     const std::optional<int> status = state.final_status();
     if (status == 0) return {};
-    if (status == static_cast<int>(ErrorKind::expectation)) {
+    if (status == int(ErrorKind::expectation)) {
       std::vector<std::string> broken;
       for (const ExpectationResult& e : state.summary->expectations) {
         if (e.checked && !e.holds) broken.push_back(fmt::format("{} is not {}", e.quantity, e.expected));
@@ -304,7 +304,7 @@ StudyResults StudyTableMaker::make() {
   fill_columns();
   note_messages();
   note_warnings();
-  if (has_missing_quantity_ && results_.worst_status == 0) results_.worst_status = static_cast<int>(ErrorKind::usage);
+  if (has_missing_quantity_ && results_.worst_status == 0) results_.worst_status = int(ErrorKind::usage);
   return std::move(results_);
 }
 

@@ -67,7 +67,7 @@ std::vector<ReadersTable> parts_of(const ResultTable& table) {
 
 /// Returns the number of UTF-8 characters, not bytes.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
+  return std::size_t(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
@@ -75,7 +75,7 @@ std::size_t width_of(const std::string& text) {
 
 std::size_t ResultTable::find(const std::string& name) const {
   const auto found = std::ranges::find_if(columns, [&](const TableColumn& column) { return column.name == name; });
-  return static_cast<std::size_t>(found - columns.begin());
+  return std::size_t(found - columns.begin());
 }
 
 std::vector<std::string> ResultTable::names() const {
@@ -86,7 +86,7 @@ std::vector<std::string> ResultTable::names() const {
 
 double number_of(const TableCell& cell) {
   if (const auto* real = std::get_if<double>(&cell)) return *real;
-  if (const auto* count = std::get_if<long>(&cell)) return static_cast<double>(*count);
+  if (const auto* count = std::get_if<long>(&cell)) return double(*count);
   const auto* text = std::get_if<std::string>(&cell);
   return text != nullptr ? number_in(*text).value_or(std::numeric_limits<double>::quiet_NaN())
                          : std::numeric_limits<double>::quiet_NaN();

@@ -92,7 +92,7 @@ TEST(Archive, RefusesWhatIsTooShort) {
   written(values);
   std::vector<char> bytes = written.take();
   for (const std::size_t length : {std::size_t{0}, std::size_t{9}, bytes.size() - 1}) {
-    Archive read(std::vector<char>(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)));
+    Archive read(std::vector<char>(bytes.begin(), bytes.begin() + std::ptrdiff_t(length)));
     Vector found;
     EXPECT_THROW(read(found), Error);
   }

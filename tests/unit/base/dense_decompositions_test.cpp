@@ -52,8 +52,7 @@ TEST(DenseDecompositions, OfSymmetricMatrices) {
   // −u″ on a line: 2 − 2 cos(kπ/(n+1)).
   const auto values = tridiagonal_eigenvalues(Vector::Constant(5, 2.0), Vector::Constant(4, -1.0));
   ASSERT_TRUE(values);
-  for (Index k = 0; k < 5; ++k)
-    EXPECT_NEAR((*values)[k], 2.0 - 2.0 * std::cos(static_cast<double>(k + 1) * M_PI / 6.0), 1e-14);
+  for (Index k = 0; k < 5; ++k) EXPECT_NEAR((*values)[k], 2.0 - 2.0 * std::cos(double(k + 1) * M_PI / 6.0), 1e-14);
   EXPECT_FALSE(tridiagonal_eigenvalues(Vector::Constant(5, NAN), Vector::Constant(4, NAN)));
 }
 

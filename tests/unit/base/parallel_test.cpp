@@ -34,7 +34,7 @@ TEST(Parallel, CoversEveryIndexOnce) {
       for (int repeat = 0; repeat < 50; ++repeat) {
         parallel_ranges(count, [&](Index begin, Index end) {
           EXPECT_LT(begin, end);
-          for (Index i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+          for (Index i = begin; i < end; ++i) ++visits[std::size_t(i)];
         });
       }
       for (const auto& visited : visits) EXPECT_EQ(visited, 50) << threads << " threads, " << count;
@@ -116,13 +116,13 @@ TEST(Parallel, SumsAreTheSameBitsForAnyNumberOfThreads) {
     const auto sum = [&] {
       return parallel_sum<double>(count, [](Index begin, Index end) {
         double part = 0.0;
-        for (Index i = begin; i < end; ++i) part += 1.0 / static_cast<double>(i + 1);
+        for (Index i = begin; i < end; ++i) part += 1.0 / double(i + 1);
         return part;
       });
     };
     const double alone = sum();
     double plain = 0.0;
-    for (Index i = 0; i < count; ++i) plain += 1.0 / static_cast<double>(i + 1);
+    for (Index i = 0; i < count; ++i) plain += 1.0 / double(i + 1);
     EXPECT_NEAR(alone, plain, 1e-12);
     for (const int threads : {2, 3, 5}) {
       const Threads set(threads);

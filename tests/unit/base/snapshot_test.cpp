@@ -94,7 +94,7 @@ TEST(SnapshotVisitor, RefusesWhatDoesNotFit) {
   };
   using Integers = Snapshot::Integers;
   const auto reals = [](std::initializer_list<double> values) {
-    return Vector(Eigen::Map<const Vector>(values.begin(), static_cast<Index>(values.size())));
+    return Vector(Eigen::Map<const Vector>(values.begin(), Index(values.size())));
   };
   expect_refused("", reals({1.0, 2.0}), "has 2 numbers where 1 are expected");
   expect_refused("", reals({-1.0}), "is negative");

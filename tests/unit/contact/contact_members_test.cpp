@@ -51,8 +51,8 @@ TEST(ContactMembers, AreSentAndCut) {
   EXPECT_TRUE(bytes_of(received) == bytes_of(contact));
   // The part with everything is the whole.
   const Index nodes = run.problem().nodes.cols();
-  ContactCut part{numbers_below(contact.size()), numbers_below(static_cast<Index>(contact.nodes.size())),
-                  numbers_below(nodes), numbers_below(contact.facets.back() + 1), nodes};
+  ContactCut part{numbers_below(contact.size()), numbers_below(Index(contact.nodes.size())), numbers_below(nodes),
+                  numbers_below(contact.facets.back() + 1), nodes};
   ContactBoundary whole = cut_contact(contact, part);
   whole.has_friction_elsewhere = contact.has_friction_elsewhere;
   EXPECT_TRUE(bytes_of(whole) == bytes_of(contact));

@@ -14,8 +14,7 @@ class TwoPoints : public testing::TestWithParam<Index> {
     using Numbers = std::vector<double>;
     const Index d = GetParam();
     obstacle_ = make_obstacle(
-        "sphere",
-        {{"centre", Numbers(static_cast<std::size_t>(d), 0.0)}, {"radius", 2.0}, {"side", std::string("inside")}},
+        "sphere", {{"centre", Numbers(std::size_t(d), 0.0)}, {"radius", 2.0}, {"side", std::string("inside")}},
         Vector::Constant(d, 0.25));
     CurvedContactData data;
     data.obstacles.push_back(obstacle_.get());
@@ -34,7 +33,7 @@ class TwoPoints : public testing::TestWithParam<Index> {
     }
     rows_.normals = Points::Zero(d, 2);
     rows_.tangents.resize(2);
-    rows_.slips.assign(static_cast<std::size_t>(2 * (d - 1)), 1);
+    rows_.slips.assign(std::size_t(2 * (d - 1)), 1);
     rows_.gap_rounding = Vector::Constant(2, 1e-15);
     rows_.gap = Vector::Zero(2);
     rows_.revision.assign(2, 0);
@@ -79,7 +78,7 @@ TEST_P(TwoPoints, HaveRowsThatAreTheDerivativesOfTheirGaps) {
   }
   // Motion along the surface changes no gap; directions are orthonormal.
   for (Index i = 0; i < 2; ++i) {
-    const Points& tangents = rows_.tangents[static_cast<std::size_t>(i)];
+    const Points& tangents = rows_.tangents[std::size_t(i)];
     EXPECT_LE((tangents.transpose() * rows_.normals.col(i)).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_LE((tangents.transpose() * tangents - Matrix::Identity(d - 1, d - 1)).cwiseAbs().maxCoeff(), 1e-15);
   }

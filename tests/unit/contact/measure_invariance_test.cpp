@@ -72,13 +72,12 @@ void reorder(std::vector<CellBlock>& blocks, int dimension, std::vector<Group>& 
     block.nodes = permuted(block.nodes, order, block.nodes_per_cell);
     block.tags = permuted(block.tags, order, 1);
     number.resize(number.size() + order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-      number[static_cast<std::size_t>(first + order[i])] = first + static_cast<Index>(i);
+    for (std::size_t i = 0; i < order.size(); ++i) number[std::size_t(first + order[i])] = first + Index(i);
     first += block.size();
   }
   for (Group& group : groups) {
     if (group.dimension != dimension) continue;
-    for (Index& member : group.members) member = number[static_cast<std::size_t>(member)];
+    for (Index& member : group.members) member = number[std::size_t(member)];
     std::ranges::sort(group.members);
   }
 }
@@ -91,13 +90,13 @@ Mesh changed(Mesh mesh, const Change& change) {
   Points nodes(mesh.nodes.rows(), mesh.nodes.cols());
   std::vector<Index> number(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    nodes.col(static_cast<Index>(i)) = mesh.nodes.col(order[i]);
-    number[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+    nodes.col(Index(i)) = mesh.nodes.col(order[i]);
+    number[std::size_t(order[i])] = Index(i);
   }
   mesh.nodes = nodes;
   for (std::vector<CellBlock>* const blocks : {&mesh.cells, &mesh.facets}) {
     for (CellBlock& block : *blocks) {
-      for (Index& node : block.nodes) node = number[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = number[std::size_t(node)];
     }
   }
   mesh.parts.clear();
@@ -192,8 +191,8 @@ TEST_P(MeasureInvariance, OfBodiesAndTheirSurfaces) {
   const int d = GetParam().dimension();
   StackedBoxes stack;
   stack.lower_shape = stack.upper_shape = GetParam().shape;
-  stack.lower_counts.assign(static_cast<std::size_t>(d), 2);
-  stack.upper_counts.assign(static_cast<std::size_t>(d), 3);
+  stack.lower_counts.assign(std::size_t(d), 2);
+  stack.upper_counts.assign(std::size_t(d), 3);
   stack.geometry_degree = GetParam().geometry_degree;
   stack.upper_map = [](const Vector& x) -> Vector {
     Vector y = x;
@@ -224,7 +223,7 @@ TEST(MeasureInvariance, OfAWarpedFacetWhereverItsNumberingBegins) {
   // The same cell with its axes x → y, y → 1 − x.
   const std::vector<Index> nodes(mesh.cells[0].nodes);
   for (const auto& [to, from] : {std::pair{0, 1}, {1, 3}, {2, 0}, {3, 2}, {4, 5}, {5, 7}, {6, 4}, {7, 6}})
-    mesh.cells[0].nodes[static_cast<std::size_t>(to)] = nodes[static_cast<std::size_t>(from)];
+    mesh.cells[0].nodes[std::size_t(to)] = nodes[std::size_t(from)];
   EXPECT_NEAR(cell_heights(mesh).front(), height, 1e-14);
 }
 

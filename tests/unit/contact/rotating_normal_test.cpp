@@ -27,13 +27,12 @@ std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
 TEST(RotatingNormal, NoOrderOfFacetsMatters) {
   for (const CellShape shape : all_cell_shapes) {
     const int d = dimension(shape);
-    BoxMesh box = box_of(shape, std::vector<int>(static_cast<std::size_t>(d), 3));
+    BoxMesh box = box_of(shape, std::vector<int>(std::size_t(d), 3));
     box.map = bend_map();
     const auto body = make_meshed_body(make_box_mesh(box), 1);
     const DisplacementSpace& space = body->space;
     Vector direction(d), displacement(space.dof_count());
-    for (Index k = 0; k < displacement.size(); ++k)
-      displacement[k] = 0.05 * std::sin(3.0 + 7.0 * static_cast<double>(k));
+    for (Index k = 0; k < displacement.size(); ++k) displacement[k] = 0.05 * std::sin(3.0 + 7.0 * double(k));
     int turning = 0;
     for (Index node = 0; node < space.node_count(); ++node) {
       std::vector<Index> facets = facets_around(space, node);

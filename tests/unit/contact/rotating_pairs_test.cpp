@@ -21,7 +21,7 @@ CaseRun stack_of(const Stack& of) {
   const std::vector<int> upper = plane ? std::vector{4, 2} : std::vector{2, 3, 2};
   const Mesh mesh =
       make_stack({.lower_shape = of.shape, .upper_shape = of.shape, .lower_counts = lower, .upper_counts = upper});
-  const std::string name = fmt::format("turning-{}-{}.msh", static_cast<int>(of.shape), of.degree);
+  const std::string name = fmt::format("turning-{}-{}.msh", int(of.shape), of.degree);
   const std::string last = plane ? "y" : "z";
   return CaseRun(fmt::format(
       "[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"all\"\ndensity = 1.0\n"

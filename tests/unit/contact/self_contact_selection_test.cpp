@@ -51,9 +51,9 @@ SlidingPair::Data both_faces(const CaseRun& run) {
 
 /// Ratio of the smallest to the largest singular value of the rows of these points; 1 if there are none.
 double independence(const std::vector<SlidingView>& views, const std::vector<std::size_t>& points, Index nodes) {
-  Matrix rows = Matrix::Zero(static_cast<Index>(points.size()), 3 * nodes);
+  Matrix rows = Matrix::Zero(Index(points.size()), 3 * nodes);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const auto& [node, value] : views[points[i]].row) rows.row(static_cast<Index>(i)).segment(3 * node, 3) = value;
+    for (const auto& [node, value] : views[points[i]].row) rows.row(Index(i)).segment(3 * node, 3) = value;
   }
   const Vector values = Eigen::JacobiSVD<Matrix>(rows).singularValues();
   return values.minCoeff() / values.maxCoeff();

@@ -31,7 +31,7 @@ CaseRun sled_of(const Sled& of) {
                                 .lower_counts = lower,
                                 .upper_counts = upper,
                                 .upper_map = affine_map(0.4 * Matrix::Identity(d, d), place)});
-  const std::string name = fmt::format("sled-{}-{}.msh", static_cast<int>(of.shape), of.degree);
+  const std::string name = fmt::format("sled-{}-{}.msh", int(of.shape), of.degree);
   const std::string last = plane ? "y" : "z";
   return CaseRun(
       fmt::format("[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"all\"\ndensity = 1.0\n"
@@ -137,7 +137,7 @@ TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
         if (problem.nodes(d - 1, dof / d) > 1.001) force[dof % d] += value;
       });
       EXPECT_LT((force - rows.normal(i)).norm(), 1e-12) << name_of(sled);
-      EXPECT_LT(std::abs(rows.normal(i).dot(rows.tangents[static_cast<std::size_t>(i)].col(0))), 1e-14);
+      EXPECT_LT(std::abs(rows.normal(i).dot(rows.tangents[std::size_t(i)].col(0))), 1e-14);
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 /// settle.
 TEST(StickingNormal, DoesNotFollowRounding) {
   std::mt19937 random(5);
-  const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
+  const auto number = [&] { return 2.0 * double(random()) / 4294967296.0 - 1.0; };
   TemporaryFolder folder(std::filesystem::temp_directory_path(), "wedge");
   std::ofstream(folder.file("wedge.txt")) << "-1 -1.5\n2 -1.6\n0.7 -0.02\n-1 -1.5\n";
   Parameters parameters;

@@ -145,7 +145,7 @@ void fuzz(const FclibProblem& problem, std::size_t stride) {
   errors = 0;
   for (std::size_t bit = 0; bit < 8 * whole.size(); bit += stride) {
     std::string damaged = whole;
-    damaged[bit / 8] = static_cast<char>(static_cast<unsigned char>(damaged[bit / 8]) ^ (1U << (bit % 8)));
+    damaged[bit / 8] = char(static_cast<unsigned char>(damaged[bit / 8]) ^ (1U << (bit % 8)));
     expect_error_or_same(file, damaged, problem, "bit " + std::to_string(bit), errors);
   }
   EXPECT_GT(errors, 0);

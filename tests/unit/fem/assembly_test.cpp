@@ -24,8 +24,7 @@ constexpr bool sanitized = false;
 std::unique_ptr<MeshedBody> large_body(const ElementKind& kind, bool just = false) {
   const int per_axis = kind.dimension() == 2 ? (just ? 46 : 48) : (just ? 12 : 14);
   const int count = per_axis / kind.displacement_degree + (just ? 0 : 1);
-  const BoxMesh box{
-      kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), count), kind.geometry_degree, 0.15, {}};
+  const BoxMesh box{kind.shape, std::vector<int>(std::size_t(kind.dimension()), count), kind.geometry_degree, 0.15, {}};
   return make_meshed_body(make_box_mesh(box), kind.displacement_degree);
 }
 
@@ -80,15 +79,15 @@ TEST(NodeGraph, HoldsTheNodesThatShareACell) {
     for (Index cell = 0; cell < block.size(); ++cell) {
       for (int i = 0; i < block.nodes_per_cell; ++i) {
         for (int j = 0; j < block.nodes_per_cell; ++j) {
-          pairs.emplace_back(static_cast<int>(block.cell(cell)[i]), static_cast<int>(block.cell(cell)[j]), 1.0);
+          pairs.emplace_back(int(block.cell(cell)[i]), int(block.cell(cell)[j]), 1.0);
         }
       }
     }
   }
   expected.setFromTriplets(pairs.begin(), pairs.end());
-  ASSERT_EQ(static_cast<Index>(graph.neighbours.size()), expected.nonZeros());
+  ASSERT_EQ(Index(graph.neighbours.size()), expected.nonZeros());
   for (Index k = 0; k < expected.nonZeros(); ++k)
-    ASSERT_EQ(graph.neighbours[static_cast<std::size_t>(k)], expected.innerIndexPtr()[k]);
+    ASSERT_EQ(graph.neighbours[std::size_t(k)], expected.innerIndexPtr()[k]);
 }
 
 TEST(EquivalentMass, IsTheSameBitsForAnyNumberOfThreads) {
@@ -162,8 +161,8 @@ TEST(CellRotations, FindsTheLargestOfAllCells) {
     const Index d = test->space.nodes.rows(), nodes = test->space.node_count();
     // From negligible angles to beyond a right angle, where 2 + the divergence is negative in some cells.
     for (const double size : {1e-9, 1e-3, 1e-2, 10.0}) {
-      const Vector u = size * Vector::NullaryExpr(
-                                  nodes * d, [](Index i) { return std::sin(0.7 * static_cast<double>(i * i % 1009)); });
+      const Vector u =
+          size * Vector::NullaryExpr(nodes * d, [](Index i) { return std::sin(0.7 * double(i * i % 1009)); });
       const double wanted = largest(u);
       EXPECT_NEAR(gauge.largest(u), wanted, 1e-12 * wanted) << size;
       EXPECT_TRUE(size < 10.0 || wanted > 2.0) << wanted;

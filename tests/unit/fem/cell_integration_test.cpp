@@ -17,7 +17,7 @@ class CellIntegration : public testing::TestWithParam<CellShape> {
     const BlockIntegration rule(shape, geometry, displacement, quadrature_degree);
     Matrix result = Matrix::Zero(rule.displacement.values.rows(), rule.displacement.values.rows());
     for (Index q = 0; q < rule.rule.weights.size(); ++q) {
-      const Matrix map = nodes * rule.geometry.gradients[static_cast<std::size_t>(q)];
+      const Matrix map = nodes * rule.geometry.gradients[std::size_t(q)];
       const Vector values = rule.displacement.values.col(q);
       result += rule.rule.weights[q] * map.determinant() * values * values.transpose();
     }
@@ -28,7 +28,7 @@ class CellIntegration : public testing::TestWithParam<CellShape> {
 /// The mass of a distorted cell, curved if its geometry is of degree 2, is integrated exactly.
 TEST_P(CellIntegration, OfProductsOfShapeFunctionsIsExact) {
   std::mt19937 random(7);
-  const auto number = [&random] { return 0.05 * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
+  const auto number = [&random] { return 0.05 * (double(random()) / 2147483648.0 - 1.0); };
   for (const int geometry : {1, 2}) {
     for (const int displacement : {1, 2}) {
       Points nodes = ReferenceElement::get(GetParam(), geometry).nodes();

@@ -43,7 +43,7 @@ Tensor random_strain(unsigned seed, double size = 0.2) {
 
 /// Changes one component of a symmetric tensor; dE_ij and dE_ji together.
 Tensor changed(const Tensor& strain, int component, double by) {
-  const auto [i, j] = tangent_components[static_cast<std::size_t>(component)];
+  const auto [i, j] = tangent_components[std::size_t(component)];
   Tensor result = strain;
   result(i, j) += 0.5 * by;
   result(j, i) += 0.5 * by;
@@ -65,14 +65,14 @@ TEST(MaterialLaw, StressAndTangentAreDerivatives) {
       EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13) << each.name;
       EXPECT_EQ(stress, Tensor(stress.transpose())) << each.name;
       for (int c = 0; c < 6; ++c) {
-        const auto [i, j] = tangent_components[static_cast<std::size_t>(c)];
+        const auto [i, j] = tangent_components[std::size_t(c)];
         const Tensor low = changed(strain, c, -h), high = changed(strain, c, h);
         EXPECT_NEAR((law->energy(high) - law->energy(low)) / (2.0 * h), stress(i, j), 1e-8) << each.name;
         law->stress(low, before);
         law->stress(high, after);
         const Tensor change = (after - before) / (2.0 * h);
         for (int p = 0; p < 6; ++p) {
-          const auto [k, l] = tangent_components[static_cast<std::size_t>(p)];
+          const auto [k, l] = tangent_components[std::size_t(p)];
           EXPECT_NEAR(change(k, l), tangent(p, c), 1e-7) << each.name << " " << p << c;
         }
       }
@@ -167,7 +167,7 @@ TEST(PointLaw, PlaneStressHasNoStressAcrossThePlane) {
 
 TEST(FiniteStrain, RemaindersHaveAllDigits) {
   for (const double x : {1e-12, -1e-6, 0.05, -0.0999, 0.1001, 3.0, -0.9}) {
-    const auto exact = static_cast<double>(static_cast<long double>(x) - std::log1p(static_cast<long double>(x)));
+    const auto exact = double(static_cast<long double>(x) - std::log1p(static_cast<long double>(x)));
     // Cancellation in long doubles leaves 1e-19/|x|.
     const double tolerance = 1e-19 / std::abs(x) + 1e-15 * exact;
     EXPECT_NEAR(logarithm_remainder(x), exact, tolerance + 1e-19 * std::abs(x)) << x;

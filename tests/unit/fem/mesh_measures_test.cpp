@@ -27,7 +27,7 @@ TEST_P(MeshMeasures, OfAParallelepiped) {
   for (const int degree : {1, 2}) {
     BoxMesh box;
     box.shape = GetParam();
-    box.counts.assign(static_cast<std::size_t>(d), 3);
+    box.counts.assign(std::size_t(d), 3);
     box.geometry_degree = degree;
     box.map = affine_map(a, shift);
     const Mesh mesh = make_box_mesh(box);
@@ -60,7 +60,7 @@ TEST_P(MeshMeasures, HeightsOfCells) {
   const int d = dimension(GetParam());
   BoxMesh box;
   box.shape = GetParam();
-  box.counts.assign(static_cast<std::size_t>(d), 4);
+  box.counts.assign(std::size_t(d), 4);
   box.distortion = 0.0;
   const Mesh mesh = make_box_mesh(box);
   // A tetrahedron is one of six of a cube, with a largest facet of √2/2 (an edge and a diagonal of a side).
@@ -70,7 +70,7 @@ TEST_P(MeshMeasures, HeightsOfCells) {
       {CellShape::tetrahedron, 3.0 * (1.0 / 6.0) / (std::sqrt(2.0) / 2.0) * 0.25},
       {CellShape::hexahedron, 0.25}};
   const std::vector<double> heights = cell_heights(mesh);
-  ASSERT_EQ(static_cast<Index>(heights.size()), mesh.cell_count());
+  ASSERT_EQ(Index(heights.size()), mesh.cell_count());
   const CellBlock& block = mesh.cells.front();
   for (Index cell = 0; cell < block.size(); ++cell) {
     const auto at = [&](int vertex) {
@@ -87,7 +87,7 @@ TEST_P(MeshMeasures, HeightsOfCells) {
         highest = std::max(highest, std::abs(normal.dot(at(vertex) - at(facet[0]))));
       least = std::min(least, highest);
     }
-    const double height = heights[static_cast<std::size_t>(cell)];
+    const double height = heights[std::size_t(cell)];
     EXPECT_NEAR(height, least, 1e-14);
     if (closed_forms.contains(block.shape)) {
       EXPECT_NEAR(height, closed_forms.at(block.shape), 1e-14);

@@ -29,7 +29,7 @@ class RandomStrains {
   RandomStrains(Index count, bool in_plane) : packs_{nullptr, count, pack_width(), in_plane} {
     std::mt19937 generator(11);
     std::uniform_real_distribution<double> random(-1.0, 1.0), exponent(-12.0, 0.2);
-    values_.resize(static_cast<std::size_t>(count * packs_.components() * packs_.width));
+    values_.resize(std::size_t(count * packs_.components() * packs_.width));
     for (Index p = 0; p < count * packs_.width; ++p) {
       const double size = std::pow(10.0, exponent(generator));
       Tensor gradient = Tensor::Zero();
@@ -43,7 +43,7 @@ class RandomStrains {
       const Index pack = p / packs_.width, lane = p % packs_.width;
       const int components[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
       for (int k = 0; k < packs_.components(); ++k)
-        values_[static_cast<std::size_t>((pack * packs_.components() + k) * packs_.width + lane)] =
+        values_[std::size_t((pack * packs_.components() + k) * packs_.width + lane)] =
             strains_.back()(components[k][0], components[k][1]);
     }
     packs_.values = values_.data();
@@ -92,8 +92,8 @@ TEST(PackedLaw, HasOfPacksWhatItHasOfEachPoint) {
           const double tolerance = 1e-14 * std::max(1.0, std::pow(strain.norm(), 3) / volume);
           Tensor wanted, found = Tensor::Zero();
           law->stress(strain, wanted);
-          const std::size_t lane = p % static_cast<std::size_t>(width);
-          const double* at = stresses.data() + (p - lane) * static_cast<std::size_t>(components) + lane;
+          const std::size_t lane = p % std::size_t(width);
+          const double* at = stresses.data() + (p - lane) * std::size_t(components) + lane;
           const int places[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
           for (int k = 0; k < components; ++k, at += width)
             found(places[k][0], places[k][1]) = found(places[k][1], places[k][0]) = *at;
@@ -116,8 +116,8 @@ TEST(PackedLaw, FunctionsOfPacksHaveAllDigits) {
       const long double exact = x[i];
       const long double logarithm = std::abs(x[i]) < 1e-3 ? exact * exact * (0.5L - exact / 3.0L + exact * exact / 4.0L)
                                                           : exact - std::log1p(exact);
-      EXPECT_NEAR(rest[i], static_cast<double>(logarithm), 1.5e-15 * static_cast<double>(logarithm)) << x[i];
-      const auto wanted = static_cast<double>(std::pow(1.0L + exact, -1.0L / 3.0L));
+      EXPECT_NEAR(rest[i], double(logarithm), 1.5e-15 * double(logarithm)) << x[i];
+      const auto wanted = double(std::pow(1.0L + exact, -1.0L / 3.0L));
       EXPECT_NEAR(root[i], wanted, 5e-16 * wanted) << x[i];
     }
   }
@@ -125,8 +125,7 @@ TEST(PackedLaw, FunctionsOfPacksHaveAllDigits) {
 
 /// A negative volume has no energy.
 TEST(PackedLaw, IsNotFiniteWhereTheVolumeIsNegative) {
-  std::vector<double> strains(static_cast<std::size_t>(6 * pack_width()), 0.0),
-      energies(static_cast<std::size_t>(pack_width()));
+  std::vector<double> strains(static_cast<std::size_t>(6 * pack_width()), 0.0), energies(std::size_t(pack_width()));
   std::fill_n(strains.begin(), pack_width(), -0.6);
   for (const std::string name : {"neo-hookean", "mooney-rivlin"}) {
     const PackedCase& each = name == "neo-hookean" ? packed_laws()[2] : packed_laws()[3];

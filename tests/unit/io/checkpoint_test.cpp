@@ -71,7 +71,7 @@ TEST(Checkpoint, EveryBitThatChangesIsSeen) {
   const std::string text = encode_snapshot(example());
   for (std::size_t at = 0; at < text.size(); ++at) {
     std::string damaged = text;
-    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
+    damaged[at] = char(damaged[at] ^ (1 << (at % 8)));
     EXPECT_NE(refusal(damaged), "") << at;
     EXPECT_NE(refusal(text.substr(0, at)), "") << at;
   }

@@ -54,13 +54,12 @@ struct Step {
   std::vector<double> reals;
   std::vector<int> integers;
   explicit Step(long number)
-      : reals(3 * rows_of_a_step, 1.5 + static_cast<double>(number)),
-        integers(rows_of_a_step, 1 + static_cast<int>(number)) {}
+      : reals(3 * rows_of_a_step, 1.5 + double(number)), integers(rows_of_a_step, 1 + int(number)) {}
 };
 
 void append(FrameFile& file) {
   const Step step(file.frames());
-  file.append({step.reals.data(), step.integers.data()}, 0.1 * static_cast<double>(file.frames()));
+  file.append({step.reals.data(), step.integers.data()}, 0.1 * double(file.frames()));
 }
 
 /// Rows of one step, or fewer if they cannot be read.

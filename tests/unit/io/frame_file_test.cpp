@@ -47,13 +47,12 @@ struct Writer {
 
   /// Numbers of a frame: some of them compress well, to a degree that depends on the frame.
   static std::vector<double> reals(long frame) {
-    std::vector<double> values(3 * rows, static_cast<double>(frame));
+    std::vector<double> values(3 * rows, double(frame));
     std::mt19937 random(static_cast<unsigned>(frame));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(7 * frame % 100); ++i)
-      values[i] = static_cast<double>(random());
+    for (std::size_t i = 0; i < std::size_t(7 * frame % 100); ++i) values[i] = double(random());
     return values;
   }
-  static std::vector<int> integers(long frame) { return std::vector<int>(rows, static_cast<int>(frame)); }
+  static std::vector<int> integers(long frame) { return std::vector<int>(rows, int(frame)); }
 
   [[nodiscard]] FrameFile start() const { return {path, fixed, layout, options}; }
   [[nodiscard]] FrameFile resume(const Snapshot& snapshot) const {
@@ -62,7 +61,7 @@ struct Writer {
   static void append(FrameFile& file) {
     const std::vector<double> a = reals(file.frames());
     const std::vector<int> b = integers(file.frames());
-    file.append({a.data(), b.data(), a.data()}, 0.1 * static_cast<double>(file.frames()));
+    file.append({a.data(), b.data(), a.data()}, 0.1 * double(file.frames()));
   }
 };
 
@@ -83,10 +82,10 @@ TEST_P(FrameFiles, GoOnWithTheSameBytesWhereverTheyWereLeft) {
   }
   for (const auto& [saved, left] :
        {std::pair{0, 0}, {0, 5}, {3, 3}, {3, 4}, {17, 40}, {39, 40}, {64, 65}, {64, 70}, {66, 70}}) {
-    overwrite(writer.path, after[static_cast<std::size_t>(left)]);
-    FrameFile resumed = writer.resume(snapshots[static_cast<std::size_t>(saved)]);
+    overwrite(writer.path, after[std::size_t(left)]);
+    FrameFile resumed = writer.resume(snapshots[std::size_t(saved)]);
     EXPECT_EQ(resumed.frames(), saved);
-    EXPECT_TRUE(content(writer.path) == after[static_cast<std::size_t>(saved)]) << saved << " of " << left;
+    EXPECT_TRUE(content(writer.path) == after[std::size_t(saved)]) << saved << " of " << left;
     while (resumed.frames() < count) Writer::append(resumed);
     EXPECT_TRUE(content(writer.path) == after.back()) << saved << " of " << left;
   }
@@ -114,7 +113,7 @@ TEST_P(FrameFiles, GoOnFromAFileThatWasTorn) {
       if (at_checkpoint[i] != end[i] && random() % 2 == 0) torn[i] = random() % 2 == 0 ? at_checkpoint[i] : 'x';
     }
     for (std::size_t i = at_checkpoint.size(); i < torn.size(); ++i) {
-      if (random() % 4 == 0) torn[i] = static_cast<char>(random());
+      if (random() % 4 == 0) torn[i] = char(random());
     }
     overwrite(writer.path, torn);
     FrameFile resumed = writer.resume(snapshot);

@@ -36,7 +36,7 @@ TEST_F(LineChecksumsTest, NamesTheLinesThatHaveChanged) {
       checksums.add(line(i));
       text += line(i);
     }
-    EXPECT_EQ(checksums.length(), static_cast<std::int64_t>(text.size()));
+    EXPECT_EQ(checksums.length(), std::int64_t(text.size()));
     Snapshot snapshot;
     checksums.persist(snapshot.saver("rows"), "rows.csv");
     write(text);
@@ -50,7 +50,7 @@ TEST_F(LineChecksumsTest, NamesTheLinesThatHaveChanged) {
       for (int i = 0; i < count; ++i) other += line(i);
       std::size_t at = 0;
       for (int i = 0; i < changed; ++i) at += line(i).size();
-      other[at] = static_cast<char>(other[at] ^ 1);
+      other[at] = char(other[at] ^ 1);
       write(other);
       const std::string message = problem(snapshot);
       std::smatch found;

@@ -11,7 +11,7 @@ namespace {
 
 Matrix random_dense_matrix(Index rows, Index columns, unsigned seed) {
   std::mt19937 random(seed);
-  return Matrix::NullaryExpr(rows, columns, [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
+  return Matrix::NullaryExpr(rows, columns, [&] { return double(random()) / 2147483648.0 - 1.0; });
 }
 
 TEST(DenseFactor, MultipliesPartsOfMatrices) {

@@ -17,7 +17,7 @@ void for_columns(const Test& test) {
   for (Index size = 0; size <= 70; ++size) {
     for (Index count = 1; count <= 3; ++count) {
       std::mt19937 random(static_cast<unsigned>(3 * size + count));
-      const auto entry = [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; };
+      const auto entry = [&] { return double(random()) / 2147483648.0 - 1.0; };
       const Matrix columns = Matrix::NullaryExpr(size + 3, count, entry);
       const Matrix rounded = columns.cast<Number>().template cast<double>();
       test(size, count, Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>(columns.cast<Number>()), rounded,

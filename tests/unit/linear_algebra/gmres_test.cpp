@@ -60,7 +60,7 @@ TEST(SingleLu, SolvesToSixDigits) {
   const Index size = 100;
   Matrix matrix = near_identity(size, random) + 20.0 * Matrix::Identity(size, size);
   for (Index j = 0; j < size; ++j) {
-    for (Index i = 0; i < size; ++i) matrix(i, j) *= std::pow(10.0, -1.5 * static_cast<double>(std::abs(i - j)));
+    for (Index i = 0; i < size; ++i) matrix(i, j) *= std::pow(10.0, -1.5 * double(std::abs(i - j)));
   }
   const Vector right = uniform(size, random);
   SingleLu factor;

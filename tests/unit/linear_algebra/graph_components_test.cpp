@@ -23,8 +23,8 @@ TEST(GraphComponents, AreTheRingsThatWerePutIn) {
     for (Index length = 1; length <= rings; begin += length++) {
       std::vector<Index> ring;
       for (Index k = 0; k < length; ++k) {
-        const Index node = number[static_cast<std::size_t>(begin + k)];
-        const Index next = number[static_cast<std::size_t>(begin + (k + 1) % length)];
+        const Index node = number[std::size_t(begin + k)];
+        const Index next = number[std::size_t(begin + (k + 1) % length)];
         ring.push_back(node);
         for (Index row = 0; row < node_size; ++row) {
           for (Index column = 0; column < node_size; ++column) {

@@ -17,9 +17,9 @@ TEST(LargestEigenvalue, IsBoundedOnSpectraOfEveryKind) {
   Vector gap = even;
   gap[n - 1] = 70.0;
   Vector dense_top = even;  // the slowest for Lanczos' method: many eigenvalues at the top
-  for (Index i = 0; i < n; ++i) dense_top[i] = 7.0 * std::sin(1.5707963267948966 * static_cast<double>(i) / (n - 1));
+  for (Index i = 0; i < n; ++i) dense_top[i] = 7.0 * std::sin(1.5707963267948966 * double(i) / (n - 1));
   Vector powers(n);
-  for (Index i = 0; i < n; ++i) powers[i] = std::pow(0.99, static_cast<double>(i));
+  for (Index i = 0; i < n; ++i) powers[i] = std::pow(0.99, double(i));
   for (const Vector& spectrum : {even, gap, dense_top, powers, Vector(Vector::Ones(n)), Vector(1e9 * even),
                                  Vector(1e-9 * gap), Vector(1e6 * dense_top)}) {
     const EigenvalueBounds found = bounds_of(spectrum);
@@ -62,7 +62,7 @@ TEST(LargestEigenvalue, IsFollowedFromAGuess) {
         8, guess);
   };
   Vector guess(n);
-  for (Index i = 0; i < n; ++i) guess[i] = std::sin(1.0 + 3.7 * static_cast<double>(i * i % 1009));
+  for (Index i = 0; i < n; ++i) guess[i] = std::sin(1.0 + 3.7 * double(i * i % 1009));
   spectrum[17] = 10.0;
   const double first = improve(guess, 0.0);
   EXPECT_NEAR(first, 10.0, 0.1);

@@ -53,7 +53,7 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
     const Vector x = Vector::Random(stiffness.cols());
     expect_product(blocks, stiffness, x);
     expect_product(scalars, mass, x);
-    EXPECT_LT(static_cast<double>(blocks.bytes()), 0.6 * 12.0 * static_cast<double>(stiffness.nonZeros()));
+    EXPECT_LT(double(blocks.bytes()), 0.6 * 12.0 * double(stiffness.nonZeros()));
     // The stored matrix equals the given one, entry by entry.
     for (const auto& [stored, given] : {std::pair{&blocks, &stiffness}, std::pair{&scalars, &mass}}) {
       EXPECT_EQ(stored->diagonal(), Vector(given->diagonal()));
@@ -110,11 +110,10 @@ TEST(NodeMatrix, GivesTheRowsAndColumnsOfNodes) {
     std::vector<Index> nodes;
     std::vector<int> number(static_cast<std::size_t>(d * test->space.node_count()), -1);
     for (Index node = 7; node < test->space.node_count(); node += 1 + node % 3) {
-      for (int k = 0; k < d; ++k)
-        number[static_cast<std::size_t>(node * d + k)] = static_cast<int>(nodes.size()) * d + k;
+      for (int k = 0; k < d; ++k) number[std::size_t(node * d + k)] = int(nodes.size()) * d + k;
       nodes.push_back(node);
     }
-    const auto size = static_cast<Index>(nodes.size()) * d;
+    const auto size = Index(nodes.size()) * d;
     for (const SparseMatrix& whole : {stiffness_of(*test), mass_of(*test)}) {
       const SparseMatrix expected = extract(whole, number, size, number, size);
       const SparseMatrix found = NodeMatrix(whole, d).principal(nodes);
@@ -221,7 +220,7 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
   {
     // Diagonal blocks only, full or not.
     SparseMatrix blocks(mass.rows(), mass.cols());
-    for (Index i = 0; i < mass.rows(); ++i) blocks.insert(i, i) = 2.0 + static_cast<double>(i % 2);
+    for (Index i = 0; i < mass.rows(); ++i) blocks.insert(i, i) = 2.0 + double(i % 2);
     EXPECT_TRUE(NodeMatrix(blocks, 2).is_diagonal());
     EXPECT_EQ(NodeMatrix(blocks, 2).diagonal(), Vector(blocks.diagonal()));
     blocks.insert(0, 1) = blocks.insert(1, 0) = 0.5;
@@ -254,11 +253,11 @@ TEST(NodeOrder, KeepsNeighboursTogether) {
     Index across = 0;
     for (std::size_t node = 0; node < part.size(); ++node) {
       for (Index k = graph.offsets[node]; k < graph.offsets[node + 1]; ++k) {
-        const auto neighbour = static_cast<std::size_t>(graph.neighbours[static_cast<std::size_t>(k)]);
+        const auto neighbour = std::size_t(graph.neighbours[std::size_t(k)]);
         across += part[node] != part[neighbour] ? 1 : 0;
       }
     }
-    const double share = static_cast<double>(across) / static_cast<double>(graph.neighbours.size());
+    const double share = double(across) / double(graph.neighbours.size());
     EXPECT_LT(share, d == 2 ? 0.06 : 0.15);
   }
 }

@@ -45,15 +45,15 @@ TEST(NumericFactorization, OfDenseMatricesOfEverySize) {
 TEST(NumericFactorization, OfRandomPatterns) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
-    const int size = 20 + static_cast<int>(random() % 400);
-    const int couplings = static_cast<int>(random() % static_cast<unsigned>(3 * size));
+    const int size = 20 + int(random() % 400);
+    const int couplings = int(random() % unsigned(3 * size));
     std::vector<Eigen::Triplet<double>> entries;
     Vector diagonal = Vector::Constant(size, 0.5);
     for (int k = 0; k < couplings; ++k) {
       // Cliques of nodes, as coupled by elements.
-      const int width = 2 + static_cast<int>(random() % 6);
+      const int width = 2 + int(random() % 6);
       std::vector<int> nodes;
-      for (int i = 0; i < width; ++i) nodes.push_back(static_cast<int>(random() % static_cast<unsigned>(size)));
+      for (int i = 0; i < width; ++i) nodes.push_back(int(random() % unsigned(size)));
       for (const int a : nodes) {
         for (const int b : nodes) {
           if (a == b) continue;
@@ -160,8 +160,8 @@ TEST_F(DividedFactorization, StopsAtTheSameUnknownForAnyNumberOfThreads) {
   const SparseCholesky order(matrix_);
   const Index size = matrix_.cols();
   for (const Index place : {Index{17}, size / 2, size - 700, size - 1}) {
-    const Index unknown = order.permutation()[static_cast<std::size_t>(place)];
-    const Index later = order.permutation()[static_cast<std::size_t>(std::min(place + 500, size - 1))];
+    const Index unknown = order.permutation()[std::size_t(place)];
+    const Index later = order.permutation()[std::size_t(std::min(place + 500, size - 1))];
     for (const double bad : {-1e9, std::numeric_limits<double>::quiet_NaN()}) {
       SparseMatrix matrix = matrix_;
       matrix.coeffRef(unknown, unknown) = bad;

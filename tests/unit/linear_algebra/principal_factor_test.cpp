@@ -24,14 +24,14 @@ TEST(PrincipalFactor, FollowsItsIndices) {
   int factored = 0;
   for (int step = 0; step < 60; ++step) {
     SCOPED_TRACE(step);
-    for (int k = 0; k < (step % 15 == 14 ? 30 : 2); ++k) in[random() % static_cast<unsigned>(size)] ^= 1;
+    for (int k = 0; k < (step % 15 == 14 ? 30 : 2); ++k) in[random() % unsigned(size)] ^= 1;
     std::vector<Index> indices;
     for (std::size_t i = 0; i < in.size(); ++i) {
-      if (in[i] != 0) indices.push_back(static_cast<Index>(i));
+      if (in[i] != 0) indices.push_back(Index(i));
     }
     ASSERT_TRUE(factor.set_indices(w, indices));
     factored += factor.has_factored() ? 1 : 0;
-    const Vector right = uniform(static_cast<Index>(indices.size()), random);
+    const Vector right = uniform(Index(indices.size()), random);
     Vector x;
     factor.solve(right, x);
     EXPECT_LE((x - solve_afresh(w, indices, right)).lpNorm<Eigen::Infinity>(), 1e-11 * x.lpNorm<Eigen::Infinity>());
@@ -56,7 +56,7 @@ TEST(PrincipalFactor, IsMadeAgainFromItsBase) {
   EXPECT_FALSE(factor.has_factored());
   ASSERT_TRUE(again.set_base(w, factor.base()));
   ASSERT_TRUE(again.set_indices(w, changed));
-  const Vector right = uniform(static_cast<Index>(changed.size()), random);
+  const Vector right = uniform(Index(changed.size()), random);
   Vector x, y;
   factor.solve(right, x);
   again.solve(right, y);

@@ -29,12 +29,12 @@ std::vector<Problem> problems() {
     Problem& problem = result.emplace_back();
     problem.matrix = combine_operator(run.problem(), {alpha / 400.0, 1.0, 0.0});
     problem.d = run.problem().dimension;
-    problem.solved.assign(static_cast<std::size_t>(problem.matrix.cols()), 1);
+    problem.solved.assign(std::size_t(problem.matrix.cols()), 1);
     for (std::size_t dof = 5; dof < problem.solved.size(); dof += 7) problem.solved[dof] = 0;
-    problem.force = Vector::NullaryExpr(
-        problem.matrix.cols(), [](Index i) { return 1e6 * std::sin(0.9 * static_cast<double>(i * i % 1013)); });
+    problem.force =
+        Vector::NullaryExpr(problem.matrix.cols(), [](Index i) { return 1e6 * std::sin(0.9 * double(i * i % 1013)); });
     for (Index dof = 0; dof < problem.force.size(); ++dof) {
-      if (problem.solved[static_cast<std::size_t>(dof)] == 0) problem.force[dof] = 0.0;
+      if (problem.solved[std::size_t(dof)] == 0) problem.force[dof] = 0.0;
     }
   }
   return result;
@@ -43,7 +43,7 @@ std::vector<Problem> problems() {
 Vector masked_product(const Problem& problem, const Vector& x) {
   Vector y = problem.matrix * x;
   for (Index dof = 0; dof < y.size(); ++dof) {
-    if (problem.solved[static_cast<std::size_t>(dof)] == 0) y[dof] = 0.0;
+    if (problem.solved[std::size_t(dof)] == 0) y[dof] = 0.0;
   }
   return y;
 }
@@ -68,7 +68,7 @@ TEST(SinglePrecisionCg, ReachDoublePrecisionInRounds) {
     }
     EXPECT_LT(gradients.norm(*blocks, residual), 1e-11 * begin);
     for (Index dof = 0; dof < x.size(); ++dof) {
-      const bool is_solved = problem.solved[static_cast<std::size_t>(dof)] != 0;
+      const bool is_solved = problem.solved[std::size_t(dof)] != 0;
       EXPECT_TRUE(is_solved || x[dof] == 0.0);
     }
   }

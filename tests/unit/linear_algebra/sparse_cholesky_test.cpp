@@ -16,7 +16,7 @@ SparseMatrix random_matrix(Index size, unsigned seed, double spread = 1.0) {
   std::mt19937 random(seed);
   Matrix dense = Matrix::Zero(size, size);
   for (Index i = 0; i < size; ++i) {
-    for (const Index j : {(i + 1) % size, static_cast<Index>(random() % static_cast<unsigned>(size))}) {
+    for (const Index j : {(i + 1) % size, Index(random() % unsigned(size))}) {
       if (i == j) continue;
       const double weight = std::pow(spread, uniform(random));
       dense(i, j) -= weight;
@@ -41,8 +41,8 @@ TEST(SparseCholesky, SolvesAsEigenDoes) {
       ASSERT_TRUE(factor.positive_definite());
       EXPECT_EQ(factor.size(), size);
       EXPECT_EQ(factor.failed_unknown(), -1);
-      EXPECT_GE(factor.factor_entries(), static_cast<std::size_t>(size));
-      EXPECT_GE(factor.factor_bytes(), static_cast<std::size_t>(size) * sizeof(double));
+      EXPECT_GE(factor.factor_entries(), std::size_t(size));
+      EXPECT_GE(factor.factor_bytes(), std::size_t(size) * sizeof(double));
       Vector x;
       factor.solve(right, x);
       EXPECT_LE((x - expected).norm(), 1e-13 * expected.norm()) << size;
@@ -59,7 +59,7 @@ TEST(SparseCholesky, PredictsWhatTheFactorizationTakes) {
   const auto predicted = factor.predicted();
   EXPECT_GT(predicted.operations, 300.0);
   factor.factorize();
-  EXPECT_EQ(predicted.entries, static_cast<double>(factor.factor_entries()));
+  EXPECT_EQ(predicted.entries, double(factor.factor_entries()));
   Vector x;
   factor.solve(matrix * Vector::Ones(300), x);
   EXPECT_LE((x - Vector::Ones(300)).norm(), 1e-12);
@@ -68,7 +68,7 @@ TEST(SparseCholesky, PredictsWhatTheFactorizationTakes) {
 TEST(SparseCholesky, KnowsThePlaceOfEveryUnknown) {
   const SparseCholesky factor(random_matrix(40, 8));
   for (Index place = 0; place < 40; ++place)
-    EXPECT_EQ(factor.factor_index(factor.permutation()[static_cast<std::size_t>(place)]), place);
+    EXPECT_EQ(factor.factor_index(factor.permutation()[std::size_t(place)]), place);
 }
 
 /// Adding L⁻¹P f between the two solves has the effect of the force f.
@@ -117,7 +117,7 @@ TEST(SparseCholesky, NamesTheUnknownAtWhichItStops) {
   for (const Index unknown : {Index{0}, Index{4}, Index{9}}) {
     for (const double bad : {0.0, -3.0}) {
       SparseMatrix diagonal(10, 10);
-      for (Index i = 0; i < 10; ++i) diagonal.insert(i, i) = i == unknown ? bad : 1.0 + static_cast<double>(i);
+      for (Index i = 0; i < 10; ++i) diagonal.insert(i, i) = i == unknown ? bad : 1.0 + double(i);
       diagonal.makeCompressed();
       const SparseCholesky factor(diagonal);
       EXPECT_FALSE(factor.positive_definite()) << unknown << " " << bad;

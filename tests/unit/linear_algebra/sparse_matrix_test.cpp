@@ -13,7 +13,7 @@ SparseMatrix random_sparse_matrix(Index size, unsigned seed) {
   Matrix dense = Matrix::Zero(size, size);
   for (Index i = 0; i < size; ++i) {
     for (Index j = 0; j < size; ++j) {
-      if (j != 2 && random() % 3 == 0) dense(i, j) = static_cast<double>(random()) / 2147483648.0 - 1.0;
+      if (j != 2 && random() % 3 == 0) dense(i, j) = double(random()) / 2147483648.0 - 1.0;
     }
   }
   return dense.sparseView();

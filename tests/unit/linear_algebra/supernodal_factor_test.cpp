@@ -53,7 +53,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       const Matrix triangle = factor.topRows(columns).triangularView<Eigen::Lower>();
       const Matrix beneath = factor.bottomRows(below);
       const std::vector<double> stream = stream_of(factor);
-      ASSERT_EQ(SupernodeLayout(columns, rows).size(), static_cast<Index>(stream.size()));
+      ASSERT_EQ(SupernodeLayout(columns, rows).size(), Index(stream.size()));
 
       const Vector right = random_vector(rows, 5);
       Vector expected = right, found(rows + 1);
@@ -134,7 +134,7 @@ TEST_F(LargeFactor, SolvesAsTheLibraryDoes) {
   SparseCholesky library(matrix_, SparseCholesky::Arithmetic::library);
   const Vector right = random_vector(size_, 3);
   EXPECT_GT(own_.work_size(), size_) << "not divided: nothing to test";
-  EXPECT_LT(own_.factor_bytes(), 1.1 * static_cast<double>(library.factor_bytes()));
+  EXPECT_LT(own_.factor_bytes(), 1.1 * double(library.factor_bytes()));
   Vector y, z, x, expected;
   own_.forward(right, y);
   library.forward(right, z);
@@ -167,9 +167,9 @@ TEST_F(LargeFactor, SolvesSparseColumnsOnTheirPaths) {
     Matrix column = Matrix::Zero(path.rows(), 1);
     Vector whole = Vector::Zero(own_.work_size());
     for (const Index place : at) {
-      const auto k = static_cast<std::size_t>(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
-      column(path.offsets[k] + place - path.first[k], 0) = 1.0 + static_cast<double>(place % 3);
-      whole[place] = 1.0 + static_cast<double>(place % 3);
+      const auto k = std::size_t(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
+      column(path.offsets[k] + place - path.first[k], 0) = 1.0 + double(place % 3);
+      whole[place] = 1.0 + double(place % 3);
     }
     factor.forward_on_path(path, column);
     own_.solve_lower(whole);
@@ -188,15 +188,15 @@ TEST_F(LargeFactor, GivesColumnsTheSameBitsInAnyCompany) {
   const std::vector<Index> places{5, 900, 901, 4000, 9000, 12345, 20000, 20001, 24000, 24100};
   const auto solve = [&](const std::vector<Index>& chosen, Index wanted) {
     const FactorPath path = factor.path(chosen);
-    Matrix columns = Matrix::Zero(path.rows(), static_cast<Index>(chosen.size()));
+    Matrix columns = Matrix::Zero(path.rows(), Index(chosen.size()));
     const auto on_path = [&](Index place) {
-      const auto k = static_cast<std::size_t>(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
+      const auto k = std::size_t(std::ranges::upper_bound(path.first, place) - path.first.begin()) - 1;
       return path.offsets[k] + place - path.first[k];
     };
     Index at = 0;
     for (std::size_t j = 0; j < chosen.size(); ++j) {
-      columns(on_path(chosen[j]), static_cast<Index>(j)) = 1.0;
-      if (chosen[j] == wanted) at = static_cast<Index>(j);
+      columns(on_path(chosen[j]), Index(j)) = 1.0;
+      if (chosen[j] == wanted) at = Index(j);
     }
     factor.forward_on_path(path, columns);
     Vector whole = Vector::Zero(size_);

@@ -14,7 +14,7 @@ SparseMatrix sparse(const Matrix& dense) {
 }
 
 Points points(Index dimension, std::initializer_list<double> values) {
-  return Eigen::Map<const Points>(values.begin(), dimension, static_cast<Index>(values.size()) / dimension);
+  return Eigen::Map<const Points>(values.begin(), dimension, Index(values.size()) / dimension);
 }
 
 /// Consistent mass matrix of a bar of length 1 and mass 1: ⅓ and ⅙.

@@ -24,7 +24,7 @@ void expect_closest(const Eigen::Vector3d& x, const ClosestPoint& closest, const
     EXPECT_LE((x - closest.position).dot(corner - closest.position), rounding);
   Eigen::Matrix4Xd span(4, static_cast<Eigen::Index>(spanning.size()));
   for (std::size_t k = 0; k < spanning.size(); ++k) {
-    const Eigen::Vector3d& corner = corners[static_cast<std::size_t>(spanning[k])];
+    const Eigen::Vector3d& corner = corners[std::size_t(spanning[k])];
     EXPECT_NEAR((x - closest.position).dot(corner - closest.position), 0.0, rounding);
     span.col(static_cast<Eigen::Index>(k)) << corner, 1.0;
   }

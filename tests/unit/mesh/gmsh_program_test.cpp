@@ -76,10 +76,10 @@ TEST_F(GmshProgram, CadFilesGetGroupsByEntity) {
     file.size = 0.5;
     const Mesh mesh = read_mesh(file);
     EXPECT_EQ(mesh.dimension, 3);
-    EXPECT_EQ(mesh.group("body", 3).members.size(), static_cast<std::size_t>(mesh.cell_count()));
+    EXPECT_EQ(mesh.group("body", 3).members.size(), std::size_t(mesh.cell_count()));
     std::size_t facets = 0;
     for (int i = 1; i <= 6; ++i) facets += mesh.group("surface " + std::to_string(i), 2).members.size();
-    EXPECT_EQ(facets, static_cast<std::size_t>(mesh.facet_count()));
+    EXPECT_EQ(facets, std::size_t(mesh.facet_count()));
   }
 }
 

@@ -115,8 +115,7 @@ TEST(MalformedMesh, HugeCountsInBinaryFilesAreRefusedBeforeAllocation) {
 TEST(MalformedMesh, TheOtherByteOrderIsRefused) {
   std::string content = mesh_content("triangle_o1_msh41_binary.msh");
   const std::size_t place = content.find("8\n") + 2;
-  std::reverse(content.begin() + static_cast<std::ptrdiff_t>(place),
-               content.begin() + static_cast<std::ptrdiff_t>(place) + 4);
+  std::reverse(content.begin() + std::ptrdiff_t(place), content.begin() + std::ptrdiff_t(place) + 4);
   EXPECT_TRUE(has(message_of([&] { (void)mesh_of(content); }), "opposite byte order"));
 }
 
@@ -146,11 +145,11 @@ TEST_P(DamagedMesh, FlippedBitsGiveAMeshOrAnError) {
   const std::string content = mesh_content(shape + '_' + dialect + ".msh");
   std::size_t places = 0, refused = 0;
   constexpr std::size_t stride = is_sanitized ? 5 * parts : parts;
-  for (auto place = static_cast<std::size_t>(part); place < content.size(); place += stride) {
+  for (auto place = std::size_t(part); place < content.size(); place += stride) {
     ++places;
     for (const int flip : {0x01, 0x04, 0x20, 0x80, 0xff}) {
       std::string damaged = content;
-      damaged[place] = static_cast<char>(damaged[place] ^ flip);
+      damaged[place] = char(damaged[place] ^ flip);
       try {
         (void)mesh_of(damaged);
       } catch (const Error& error) {

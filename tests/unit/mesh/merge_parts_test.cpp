@@ -56,7 +56,7 @@ TEST(MergeParts, KeepsCellsFacetsAndGroupsOfEachPart) {
       EXPECT_EQ(part.name, parts[i].name);
       EXPECT_EQ(part.node_count, own.node_count());
       EXPECT_EQ(mesh.nodes.middleCols(part.first_node, part.node_count), own.nodes);
-      EXPECT_EQ(static_cast<Index>(part.cells.size()), own.cell_count());
+      EXPECT_EQ(Index(part.cells.size()), own.cell_count());
       EXPECT_TRUE(std::ranges::is_sorted(part.cells));
       std::multiset<PlacedCell> before, after;
       for (Index cell = 0; cell < own.cell_count(); ++cell) before.insert(placed_cell(own, own.cells, cell));
@@ -85,7 +85,7 @@ TEST(MergeParts, HasOneBlockPerShapeInTheOrderOfShapes) {
   EXPECT_EQ(mesh.cells[1].shape, CellShape::quadrilateral);
   ASSERT_EQ(mesh.facets.size(), 1u);
   for (const CellBlock& block : mesh.cells)
-    EXPECT_EQ(block.nodes.size(), static_cast<std::size_t>(block.size() * block.nodes_per_cell));
+    EXPECT_EQ(block.nodes.size(), std::size_t(block.size() * block.nodes_per_cell));
 }
 
 TEST(MergeParts, NumbersForMessagesHaveThoseOfTheFileInTheirLastDigits) {
@@ -99,7 +99,7 @@ TEST(MergeParts, NumbersForMessagesHaveThoseOfTheFileInTheirLastDigits) {
   std::set<std::int64_t> expected = numbers(parts[0].mesh);
   for (const std::int64_t tag : numbers(parts[1].mesh)) expected.insert(tag + 1'000'000);
   EXPECT_EQ(numbers(mesh), expected);
-  const auto first = static_cast<std::size_t>(parts[0].mesh.node_count());
+  const auto first = std::size_t(parts[0].mesh.node_count());
   EXPECT_EQ(mesh.node_tags[0], parts[0].mesh.node_tags[0]);
   EXPECT_EQ(mesh.node_tags[first], parts[1].mesh.node_tags[0] + 1'000'000);
   // A number with as many digits as those of the first file.
@@ -117,7 +117,7 @@ TEST(MergeParts, FacetsThatNoFileHasStayWithoutNumber) {
   const Group& boundary = mesh.group("right.boundary", 1);
   const auto count = std::ranges::count_if(boundary.members, [&](Index facet) {
     const IndexInBlocks at = locate_in_blocks(mesh.facets, facet);
-    return mesh.facets[at.block].tags[static_cast<std::size_t>(at.local)] == 0;
+    return mesh.facets[at.block].tags[std::size_t(at.local)] == 0;
   });
   EXPECT_EQ(count, 8);  // 12 sides, of which 4 are in the group of the file
 }
@@ -138,7 +138,7 @@ TEST(MergeParts, AllAndBoundaryOfAPartAreBuiltIn) {
       EXPECT_EQ(mesh.group("boundary", 1).members.size(),
                 mesh.group("left.boundary", 1).members.size() + mesh.group("right.boundary", 1).members.size());
       EXPECT_EQ(mesh.group("left.all", 2).members, mesh.parts[0].cells);
-      EXPECT_EQ(mesh.group("all", 2).members.size(), static_cast<std::size_t>(mesh.cell_count()));
+      EXPECT_EQ(mesh.group("all", 2).members.size(), std::size_t(mesh.cell_count()));
       // The file already has a group "all".
       EXPECT_EQ(placed_members(mesh, mesh.group("right.all", 2)),
                 placed_members(parts[1].mesh, parts[1].mesh.group("all", 2)));

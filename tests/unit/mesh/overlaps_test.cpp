@@ -62,7 +62,7 @@ TEST(Overlaps, AreNotSeenWhereThereAreNone) {
     for (const int degree : {1, 2}) {
       BoxMesh box;
       box.shape = shape;
-      box.counts.assign(static_cast<std::size_t>(dimension(shape)), 4);
+      box.counts.assign(std::size_t(dimension(shape)), 4);
       box.geometry_degree = degree;
       box.map = swirl_map(0.05);
       const Mesh mesh = make_checked_box_mesh(box);

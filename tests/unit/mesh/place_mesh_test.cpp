@@ -13,7 +13,7 @@ namespace {
 Mesh points(const Matrix& nodes) {
   Mesh mesh;
   mesh.source = "points";
-  mesh.dimension = static_cast<int>(nodes.rows());
+  mesh.dimension = int(nodes.rows());
   mesh.nodes = nodes;
   return mesh;
 }

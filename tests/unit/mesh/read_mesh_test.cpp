@@ -25,7 +25,7 @@ std::map<std::string, std::set<CellByNodes>> content_by_group(const Mesh& mesh) 
       }
       CellByNodes tags;
       for (int k = 0; k < block.nodes_per_cell; ++k) {
-        tags.push_back(mesh.node_tags[static_cast<std::size_t>(block.cell(number)[k])]);
+        tags.push_back(mesh.node_tags[std::size_t(block.cell(number)[k])]);
       }
       std::ranges::sort(tags);
       result[key].insert(tags);
@@ -61,13 +61,13 @@ TEST(ReadMesh, GroupsAreThoseOfTheGeometry) {
   const Mesh mesh = read_test_mesh("triangle_o1_msh41_ascii.msh");
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_EQ(mesh.degree, 1);
-  EXPECT_EQ(mesh.group("body", 2).members.size(), static_cast<std::size_t>(mesh.cell_count()));
+  EXPECT_EQ(mesh.group("body", 2).members.size(), std::size_t(mesh.cell_count()));
   EXPECT_EQ(mesh.group("7", 1).tag, 7);  // an unnamed group
   EXPECT_NE(mesh.find_group("corner", 0), nullptr);
   EXPECT_EQ(mesh.find_group("corner", 1), nullptr);
   std::size_t facets = 0;
   for (const char* name : {"bottom", "sides", "7"}) facets += mesh.group(name, 1).members.size();
-  EXPECT_EQ(facets, static_cast<std::size_t>(mesh.facet_count()));
+  EXPECT_EQ(facets, std::size_t(mesh.facet_count()));
 }
 
 TEST(ReadMesh, CellsInTwoGroupsAreThereOnce) {
@@ -96,7 +96,7 @@ TEST(ReadMesh, ParametricCoordinatesAreSkipped) {
 TEST(ReadMesh, CurvedBoundaryNodesLieOnTheCircle) {
   const Mesh mesh = read_test_mesh("disc_o2_msh41_binary.msh");
   ASSERT_EQ(mesh.facets.size(), 1u);
-  ASSERT_EQ(mesh.group("boundary", 1).members.size(), static_cast<std::size_t>(mesh.facet_count()));
+  ASSERT_EQ(mesh.group("boundary", 1).members.size(), std::size_t(mesh.facet_count()));
   for (const Index node : mesh.facets[0].nodes) EXPECT_NEAR(mesh.nodes.col(node).norm(), 1.0, 1e-9);
 }
 

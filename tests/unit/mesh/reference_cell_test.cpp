@@ -28,9 +28,9 @@ basix::cell::type basix_cell(CellShape shape) {
   for (int number = 1; number <= 7; ++number) {
     const auto type = static_cast<basix::cell::type>(number);
     const auto [points, extents] = basix::cell::geometry(type);
-    bool same = extents[0] == describe(shape).vertices.size() && static_cast<int>(extents[1]) == dimension(shape);
+    bool same = extents[0] == describe(shape).vertices.size() && int(extents[1]) == dimension(shape);
     for (std::size_t i = 0; same && i < points.size(); ++i)
-      same = points[i] == describe(shape).vertices[i / extents[1]][static_cast<Index>(i % extents[1])];
+      same = points[i] == describe(shape).vertices[i / extents[1]][Index(i % extents[1])];
     if (same) return type;
   }
   ADD_FAILURE() << "Basix has no cell with the vertices of a " << name(shape);
@@ -44,7 +44,7 @@ class ReferenceCell : public testing::TestWithParam<CellShape> {
                                  basix::element::lagrange_variant::gll_warped);
   }
   [[nodiscard]] Eigen::Vector3d at(int node) const {
-    return reference_position(shape_, node_vertices(shape_, 2)[static_cast<std::size_t>(node)]);
+    return reference_position(shape_, node_vertices(shape_, 2)[std::size_t(node)]);
   }
   /// Measure of a simplex, negative if it is inverted; `corner(k)` is a point.
   template <class Corner>
@@ -68,11 +68,10 @@ TEST_P(ReferenceCell, NodesAreThoseOfBasixInItsOrder) {
     const auto [points, extents] = element(degree).points();
     const auto& nodes = node_vertices(shape_, degree);
     ASSERT_EQ(nodes.size(), extents[0]);
-    ASSERT_EQ(nodes.size(), static_cast<std::size_t>(node_count(shape_, degree)));
+    ASSERT_EQ(nodes.size(), std::size_t(node_count(shape_, degree)));
     for (std::size_t node = 0; node < nodes.size(); ++node) {
       for (int axis = 0; axis < d_; ++axis)
-        EXPECT_NEAR(reference_position(shape_, nodes[node])[axis],
-                    points[node * extents[1] + static_cast<std::size_t>(axis)], 1e-14)
+        EXPECT_NEAR(reference_position(shape_, nodes[node])[axis], points[node * extents[1] + std::size_t(axis)], 1e-14)
             << "degree " << degree << " node " << node;
     }
   }
@@ -82,18 +81,18 @@ TEST_P(ReferenceCell, EdgesAndFacetsAreThoseOfBasixInItsOrder) {
   const auto topology = basix::cell::topology(basix_cell(shape_));
   EXPECT_EQ(describe(shape_).edges, topology[1]);
   if (d_ == 1) return;
-  const auto& expected = topology[static_cast<std::size_t>(d_ - 1)];
+  const auto& expected = topology[std::size_t(d_ - 1)];
   EXPECT_EQ(facet_nodes(shape_, 1), expected);
   const auto& second = facet_nodes(shape_, 2);
   ASSERT_EQ(second.size(), expected.size());
   for (std::size_t facet = 0; facet < second.size(); ++facet) {
-    EXPECT_EQ(vertex_count(facet_shape(shape_, facet)), static_cast<int>(expected[facet].size()));
+    EXPECT_EQ(vertex_count(facet_shape(shape_, facet)), int(expected[facet].size()));
     const auto& local = node_vertices(facet_shape(shape_, facet), 2);
     ASSERT_EQ(second[facet].size(), local.size());
     for (std::size_t node = 0; node < local.size(); ++node) {
       std::vector<int> vertices;
-      for (const int vertex : local[node]) vertices.push_back(expected[facet][static_cast<std::size_t>(vertex)]);
-      EXPECT_EQ(node_vertices(shape_, 2)[static_cast<std::size_t>(second[facet][node])], vertices);
+      for (const int vertex : local[node]) vertices.push_back(expected[facet][std::size_t(vertex)]);
+      EXPECT_EQ(node_vertices(shape_, 2)[std::size_t(second[facet][node])], vertices);
     }
   }
 }
@@ -120,9 +119,9 @@ TEST_P(ReferenceCell, MirroredNodesExchangeTheFirstTwoAxes) {
   if (d_ == 1) return;
   for (const int degree : {1, 2}) {
     const std::vector<int>& mirrored = mirrored_nodes(shape_, degree);
-    ASSERT_EQ(static_cast<int>(mirrored.size()), node_count(shape_, degree));
+    ASSERT_EQ(int(mirrored.size()), node_count(shape_, degree));
     for (int node = 0; node < node_count(shape_, degree); ++node) {
-      Eigen::Vector3d image = at(mirrored[static_cast<std::size_t>(node)]);
+      Eigen::Vector3d image = at(mirrored[std::size_t(node)]);
       std::swap(image[0], image[1]);
       EXPECT_EQ(image, at(node));
     }
@@ -133,15 +132,15 @@ TEST_P(ReferenceCell, LagrangeFunctionsAreThoseOfBasix) {
   const std::vector<double> points{0.21, 0.13, 0.34, 0.5, 0.25, 0.125};  // of three coordinates each
   for (const int degree : {1, 2}) {
     for (const std::size_t first : {0u, 3u}) {
-      const std::span<const double> point(points.data() + first, static_cast<std::size_t>(d_));
+      const std::span<const double> point(points.data() + first, std::size_t(d_));
       const auto [table, extents] = element(degree).tabulate(1, point, {1, point.size()});
-      const auto nodes = static_cast<std::size_t>(node_count(shape_, degree));
+      const auto nodes = std::size_t(node_count(shape_, degree));
       const Eigen::Vector3d here(points[first], points[first + 1], points[first + 2]);
       for (std::size_t node = 0; node < nodes; ++node) {
-        const LagrangeValue found = describe(shape_).lagrange(degree, at(static_cast<int>(node)), here);
+        const LagrangeValue found = describe(shape_).lagrange(degree, at(int(node)), here);
         EXPECT_NEAR(found.value, table[node], 1e-14) << "degree " << degree << " node " << node;
         for (std::size_t axis = 0; axis < point.size(); ++axis)
-          EXPECT_NEAR(found.gradient[static_cast<Index>(axis)], table[(axis + 1) * nodes + node], 1e-13)
+          EXPECT_NEAR(found.gradient[Index(axis)], table[(axis + 1) * nodes + node], 1e-13)
               << "degree " << degree << " node " << node;
       }
     }
@@ -165,18 +164,16 @@ TEST_P(ReferenceCell, ChildrenFillTheCell) {
     std::map<std::set<VertexSet>, double> outside;
     double sum = 0.0;
     for (const CellShapeDescription::Child& child : subdivision.children) {
-      ASSERT_EQ(static_cast<int>(child.vertices.size()), vertex_count(child.shape));
-      const auto corner = [&](int k) {
-        return reference_position(shape_, child.vertices[static_cast<std::size_t>(k)]);
-      };
+      ASSERT_EQ(int(child.vertices.size()), vertex_count(child.shape));
+      const auto corner = [&](int k) { return reference_position(shape_, child.vertices[std::size_t(k)]); };
       for (const FlatPiece& piece : flat_pieces(child.shape, 1)) {
-        const double part = measure([&](int k) { return corner(piece[static_cast<std::size_t>(k)]); });
+        const double part = measure([&](int k) { return corner(piece[std::size_t(k)]); });
         EXPECT_GT(part, 0.0);
         sum += part;
       }
       for (const std::vector<int>& facet : outward_facet_vertices(child.shape)) {
         std::set<VertexSet> key;
-        for (const int k : facet) key.insert(child.vertices[static_cast<std::size_t>(k)]);
+        for (const int k : facet) key.insert(child.vertices[std::size_t(k)]);
         if (!outside.try_emplace(key, area(facet, corner)).second) outside.erase(key);
       }
     }
@@ -192,16 +189,16 @@ TEST_P(ReferenceCell, FlatPiecesFillItAndUseAllNodes) {
     std::set<int> used;
     double sum = 0.0;
     for (const FlatPiece& piece : flat_pieces(shape_, degree)) {
-      const double part = measure([&](int k) { return at(piece[static_cast<std::size_t>(k)]); });
+      const double part = measure([&](int k) { return at(piece[std::size_t(k)]); });
       EXPECT_GT(part, 0.0);
       sum += part;
       for (int k = 0; k < 4; ++k) {
-        EXPECT_EQ(piece[static_cast<std::size_t>(k)] >= 0, k <= d_);
-        if (k <= d_) used.insert(piece[static_cast<std::size_t>(k)]);
+        EXPECT_EQ(piece[std::size_t(k)] >= 0, k <= d_);
+        if (k <= d_) used.insert(piece[std::size_t(k)]);
       }
     }
     EXPECT_NEAR(sum, whole(), 1e-14) << degree;
-    EXPECT_EQ(static_cast<int>(used.size()), node_count(shape_, degree)) << degree;
+    EXPECT_EQ(int(used.size()), node_count(shape_, degree)) << degree;
   }
 }
 
@@ -255,7 +252,7 @@ TEST_P(ReferenceCell, FacetsOfAbaqusAndExodusAreThoseOfTheCell) {
   std::set<VertexSet> found;
   for (const VertexSet& facet : cell.abaqus_facets) {
     VertexSet vertices;
-    for (const int vertex : facet) vertices.push_back(cell.file_vertices[static_cast<std::size_t>(vertex)]);
+    for (const int vertex : facet) vertices.push_back(cell.file_vertices[std::size_t(vertex)]);
     std::ranges::sort(vertices);
     found.insert(vertices);
   }
@@ -326,12 +323,12 @@ TEST(CellsOfGmshFiles, MiddleNodesLieAtTheMeanOfTheirVertices) {
       for (const auto* blocks : {&mesh.cells, &mesh.facets}) {
         for (const CellBlock& block : *blocks) {
           const auto& nodes = node_vertices(block.shape, 2);
-          ASSERT_EQ(block.nodes_per_cell, static_cast<int>(nodes.size()));
+          ASSERT_EQ(block.nodes_per_cell, int(nodes.size()));
           for (Index cell = 0; cell < block.size(); ++cell) {
             for (std::size_t node = 0; node < nodes.size(); ++node) {
               Vector mean = Vector::Zero(mesh.dimension);
               for (const int vertex : nodes[node]) mean += mesh.nodes.col(block.cell(cell)[vertex]);
-              mean /= static_cast<double>(nodes[node].size());
+              mean /= double(nodes[node].size());
               EXPECT_LT((mesh.nodes.col(block.cell(cell)[node]) - mean).norm(), 1e-11)
                   << shape << " " << dialect << " " << name(block.shape) << " node " << node;
             }

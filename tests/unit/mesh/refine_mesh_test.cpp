@@ -37,8 +37,8 @@ TEST_P(RefineMesh, KeepsTheBodyAndItsGroups) {
     for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
       const Group &coarse = mesh.groups[g], &group = fine.groups[g];
       EXPECT_EQ(group.name, coarse.name);
-      EXPECT_EQ(static_cast<Index>(group.members.size()),
-                static_cast<Index>(coarse.members.size()) * (coarse.dimension == d ? parts : of_facets));
+      EXPECT_EQ(Index(group.members.size()),
+                Index(coarse.members.size()) * (coarse.dimension == d ? parts : of_facets));
       EXPECT_TRUE(std::ranges::is_sorted(group.members));
     }
   }
@@ -55,15 +55,15 @@ TEST_P(RefineMesh, LeavesNoGaps) {
   EXPECT_EQ(boundary_facets(mesh.cells).size(), before << (mesh.dimension - 1));
   EXPECT_EQ(mesh.nodes.leftCols(nodes.cols()), nodes);
   EXPECT_TRUE(std::equal(tags.begin(), tags.end(), mesh.node_tags.begin()));
-  EXPECT_EQ(mesh.node_tags.size(), static_cast<std::size_t>(mesh.node_count()));
+  EXPECT_EQ(mesh.node_tags.size(), std::size_t(mesh.node_count()));
   std::set<std::vector<double>> places;
   for (Index i = 0; i < mesh.node_count(); ++i)
     places.insert(std::vector<double>(mesh.nodes.col(i).begin(), mesh.nodes.col(i).end()));
-  EXPECT_EQ(places.size(), static_cast<std::size_t>(mesh.node_count())) << "two nodes at one position";
+  EXPECT_EQ(places.size(), std::size_t(mesh.node_count())) << "two nodes at one position";
   // The nodes are exactly those of the cells.
   std::set<Index> used;
   for (const CellBlock& block : mesh.cells) used.insert(block.nodes.begin(), block.nodes.end());
-  EXPECT_EQ(used.size(), static_cast<std::size_t>(mesh.node_count()));
+  EXPECT_EQ(used.size(), std::size_t(mesh.node_count()));
 }
 
 /// All parts are correctly oriented, and none is much thinner than its parent.

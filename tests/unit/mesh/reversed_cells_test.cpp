@@ -37,9 +37,9 @@ gmsh::RawMesh with_reversed_cells(const std::string& name, std::size_t stride) {
     if (gmsh::find_element_type(elements.type)->dimension != dimension) continue;
     const std::vector<std::size_t>& image = mirror_images().at(elements.type);
     for (std::size_t cell = 0; cell < elements.tags.size(); cell += stride) {
-      const auto first = elements.nodes.begin() + static_cast<std::ptrdiff_t>(cell * image.size());
-      const std::vector<std::int64_t> nodes(first, first + static_cast<std::ptrdiff_t>(image.size()));
-      for (std::size_t k = 0; k < image.size(); ++k) first[static_cast<std::ptrdiff_t>(k)] = nodes[image[k]];
+      const auto first = elements.nodes.begin() + std::ptrdiff_t(cell * image.size());
+      const std::vector<std::int64_t> nodes(first, first + std::ptrdiff_t(image.size()));
+      for (std::size_t k = 0; k < image.size(); ++k) first[std::ptrdiff_t(k)] = nodes[image[k]];
     }
   }
   return raw;
@@ -58,8 +58,7 @@ double corner_determinant(const Mesh& mesh, const CellBlock& block, Index cell) 
 
 std::set<std::int64_t> node_set(const Mesh& mesh, const CellBlock& block, Index cell) {
   std::set<std::int64_t> tags;
-  for (int k = 0; k < block.nodes_per_cell; ++k)
-    tags.insert(mesh.node_tags[static_cast<std::size_t>(block.cell(cell)[k])]);
+  for (int k = 0; k < block.nodes_per_cell; ++k) tags.insert(mesh.node_tags[std::size_t(block.cell(cell)[k])]);
   return tags;
 }
 
@@ -121,7 +120,7 @@ gmsh::RawMesh two_cells(int type, double far, bool second_reversed) {
     second = image;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    raw.node_tags.push_back(static_cast<std::int64_t>(i) + 1);
+    raw.node_tags.push_back(std::int64_t(i) + 1);
     raw.coordinates.insert(raw.coordinates.end(), points[i].begin(), points[i].end());
   }
   gmsh::RawElements cells;
@@ -166,7 +165,7 @@ TEST(ReversedCells, EveryFacetInsideTellsOnWhichSideItsCellsLie) {
         Index* nodes = block.nodes.data() + place.second * block.nodes_per_cell;
         const std::vector<Index> before(nodes, nodes + block.nodes_per_cell);
         const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
-        for (std::size_t k = 0; k < before.size(); ++k) nodes[k] = before[static_cast<std::size_t>(mirrored[k])];
+        for (std::size_t k = 0; k < before.size(); ++k) nodes[k] = before[std::size_t(mirrored[k])];
         EXPECT_EQ(folded_facets(mesh.cells).size(), count) << shape;
         std::ranges::copy(before, nodes);
       }

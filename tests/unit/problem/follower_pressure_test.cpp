@@ -47,7 +47,7 @@ class Pressed : public testing::TestWithParam<BodyKind> {
       const BlockIntegration rule(cells.shape, body_->mesh.degree, body_->space.degree, exact);
       for (Index cell = 0; cell < cells.size(); ++cell) {
         for (Index q = 0; q < rule.rule.weights.size(); ++q) {
-          const auto number = static_cast<std::size_t>(q);
+          const auto number = std::size_t(q);
           auto map = jacobian<d>(body_->mesh.nodes, cells.cell(cell), rule.geometry.gradients[number]);
           double radius = rule.radius(body_->mesh.nodes, cells.cell(cell), q);
           for (Index k = 0; k < space.nodes_per_cell; ++k) {

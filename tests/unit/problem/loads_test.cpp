@@ -169,8 +169,7 @@ SparseMatrix springs(const Points& nodes, const std::vector<std::pair<Index, Ind
     for (Index a = 0; a < d; ++a) {
       for (Index b = 0; b < d; ++b) {
         for (const auto& [row, column, sign] : {std::tuple{i, i, 1.0}, {j, j, 1.0}, {i, j, -1.0}, {j, i, -1.0}})
-          entries.emplace_back(static_cast<int>(row * d + a), static_cast<int>(column * d + b),
-                               sign * along[a] * along[b]);
+          entries.emplace_back(int(row * d + a), int(column * d + b), sign * along[a] * along[b]);
       }
     }
   }
@@ -245,10 +244,9 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
 TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
   for (const int d : {2, 3}) {
     for (const int degree : {1, 2}) {
-      const auto test =
-          make_meshed_body(make_box_mesh({d == 2 ? CellShape::triangle : CellShape::tetrahedron,
-                                          std::vector<int>(static_cast<std::size_t>(d), 4), 2, 0.1, swirl_map(0.05)}),
-                           degree);
+      const auto test = make_meshed_body(make_box_mesh({d == 2 ? CellShape::triangle : CellShape::tetrahedron,
+                                                        std::vector<int>(std::size_t(d), 4), 2, 0.1, swirl_map(0.05)}),
+                                         degree);
       const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
       const LinearElasticity elasticity(stiffness, test->space.nodes);
       const Vector u = interpolate(test->space, [&](const Vector& x) {

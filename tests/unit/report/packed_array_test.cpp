@@ -27,11 +27,11 @@ unsigned byte(const std::string& bytes, std::size_t at) {
 
 /// Decodes the levels as the viewer does, from the description of the format.
 std::vector<unsigned> decoded(const PackedArray& array, const std::string& bytes) {
-  const auto columns = static_cast<std::size_t>(array.columns);
+  const auto columns = std::size_t(array.columns);
   const unsigned mask = (1U << array.bits) - 1U;
   const std::size_t planes = array.bits > 8 ? 2 : 1;
   std::vector<unsigned> levels;
-  for (std::size_t r = 0; r < static_cast<std::size_t>(array.rows); ++r) {
+  for (std::size_t r = 0; r < std::size_t(array.rows); ++r) {
     for (std::size_t i = 0; i < columns; ++i) {
       const auto level = [&](std::size_t row, std::size_t column) { return levels[row * columns + column]; };
       unsigned expected = r > 0 ? level(r - 1, i) : 0U;
@@ -56,8 +56,7 @@ TEST(PackedArrays, GiveRealsBackToTheBit) {
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::uint64_t word = 0;
-    for (std::size_t k = 0; k < 8; ++k)
-      word |= static_cast<std::uint64_t>(byte(bytes, k * values.size() + i)) << (8 * k);
+    for (std::size_t k = 0; k < 8; ++k) word |= std::uint64_t(byte(bytes, k * values.size() + i)) << (8 * k);
     before ^= word;
     EXPECT_EQ(before, std::bit_cast<std::uint64_t>(values[i])) << i;
   }
@@ -73,7 +72,7 @@ TEST(PackedArrays, GiveIndicesBack) {
     std::uint32_t code = 0;
     for (std::size_t k = 0; k < 4; ++k) code |= byte(bytes, k * values.size() + i) << (8 * k);
     before += (code & 1U) != 0 ? ~(code >> 1U) : code >> 1U;
-    EXPECT_EQ(static_cast<std::int32_t>(before), values[i]) << i;
+    EXPECT_EQ(std::int32_t(before), values[i]) << i;
   }
 }
 
@@ -86,8 +85,7 @@ TEST(PackedArrays, KeepValuesToHalfALevel) {
       std::vector<float> values;
       for (Index r = 0; r < rows; ++r) {
         for (Index i = 0; i < columns; ++i)
-          values.push_back(smooth ? std::sin(0.2F * static_cast<float>(r) + 0.1F * static_cast<float>(i))
-                                  : noise(random));
+          values.push_back(smooth ? std::sin(0.2F * float(r) + 0.1F * float(i)) : noise(random));
       }
       values[3] = std::numeric_limits<float>::quiet_NaN();
       values[100] = -std::numeric_limits<float>::infinity();
@@ -100,7 +98,7 @@ TEST(PackedArrays, KeepValuesToHalfALevel) {
         if (i == 3 || i == 100) {
           EXPECT_EQ(levels[i], (1U << bits) - 1U) << "no number";
         } else {
-          EXPECT_NEAR(array.low + array.step * levels[i], static_cast<double>(values[i]), 0.5000001 * array.step) << i;
+          EXPECT_NEAR(array.low + array.step * levels[i], double(values[i]), 0.5000001 * array.step) << i;
         }
       }
       EXPECT_NEAR(array.step, 2.0 / ((1U << bits) - 2U), smooth ? 1e-3 : 0.1 * array.step + 0.02);
@@ -113,8 +111,8 @@ TEST(PackedArrays, TakeTheBetterPrediction) {
   for (int r = 0; r < 30; ++r) {
     for (int i = 0; i < 200; ++i) {
       // Local flicker is uncorrelated with its neighbours; the motion of a whole body is correlated.
-      still.push_back(static_cast<float>((i * 7919 + r * (i % 3)) % 101));
-      wave.push_back(static_cast<float>(0.5 * r * r + std::sin(0.05 * i)));
+      still.push_back(float((i * 7919 + r * (i % 3)) % 101));
+      wave.push_back(float(0.5 * r * r + std::sin(0.05 * i)));
     }
   }
   PackedArrays arrays;
@@ -126,7 +124,7 @@ TEST(PackedArrays, KeepConstantsExactly) {
   PackedArrays arrays;
   const PackedArray array = arrays.add_levels(std::vector<float>(12, 0.7F), 3, 4, 12);
   for (const unsigned level : decoded(array, inflated(arrays.blobs().at(array.blob), 24)))
-    EXPECT_EQ(array.low + array.step * level, static_cast<double>(0.7F));
+    EXPECT_EQ(array.low + array.step * level, double(0.7F));
 }
 
 TEST(PackedArrays, KeepSmallNumbersExactly) {
@@ -134,8 +132,7 @@ TEST(PackedArrays, KeepSmallNumbersExactly) {
   PackedArrays arrays;
   const PackedArray array = arrays.add_small_numbers(values, 2, 4);
   const std::vector<unsigned> levels = decoded(array, inflated(arrays.blobs().at(array.blob), 8));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    EXPECT_EQ(array.low + array.step * levels[i], static_cast<double>(values[i]));
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(array.low + array.step * levels[i], double(values[i]));
 }
 
 TEST(PackedArrays, KeepEqualOnesOnce) {

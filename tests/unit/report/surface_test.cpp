@@ -22,12 +22,12 @@ Points in_space(const Points& nodes) {
 
 /// Index in `surface.nodes` of corner k of a triangle.
 int corner_of(const Simplices& surface, Index t, int k) {
-  return surface.corners[static_cast<std::size_t>(3 * t + k)];
+  return surface.corners[std::size_t(3 * t + k)];
 }
 
 double area(const Points& nodes, const Simplices& surface, Index t) {
   const auto corner = [&](int k) {
-    return Eigen::Vector3d(nodes.col(surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))]));
+    return Eigen::Vector3d(nodes.col(surface.nodes[std::size_t(corner_of(surface, t, k))]));
   };
   return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
 }
@@ -40,7 +40,7 @@ struct Sides {
         const int a = corner_of(surface, t, k), b = corner_of(surface, t, (k + 1) % 3);
         const auto side = std::minmax(a, b);
         ++times[side];
-        edges[side] += (surface.sides[static_cast<std::size_t>(t)] >> k) & 1;
+        edges[side] += (surface.sides[std::size_t(t)] >> k) & 1;
       }
     }
   }
@@ -51,7 +51,7 @@ class SurfaceOf : public testing::TestWithParam<ElementKind> {};
 /// The whole square in the plane (area 1), or the cube's boundary in space (area 6), for all cells.
 TEST_P(SurfaceOf, ABoxIsComplete) {
   const ElementKind& kind = GetParam();
-  const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 3));
+  const BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(kind.dimension()), 3));
   const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const Points nodes = in_space(body->space.nodes);
   const Simplices surface = make_surface(nodes, body->space.cells, 1000000);
@@ -77,26 +77,26 @@ TEST_P(SurfaceOf, ABoxIsComplete) {
 
   // Every named node exists and occurs once.
   EXPECT_EQ(std::set<Index>(surface.nodes.begin(), surface.nodes.end()).size(), surface.nodes.size());
-  for (const int node : surface.corners) EXPECT_LT(static_cast<std::size_t>(node), surface.nodes.size());
+  for (const int node : surface.corners) EXPECT_LT(std::size_t(node), surface.nodes.size());
   if (kind.dimension() == 2) {
     Index cells = 0;
     for (const CellBlock& block : body->space.cells) cells += block.size();
-    EXPECT_EQ(static_cast<Index>(std::set<int>(surface.cells.begin(), surface.cells.end()).size()), cells);
-    EXPECT_EQ(static_cast<Index>(surface.nodes.size()), nodes.cols());
+    EXPECT_EQ(Index(std::set<int>(surface.cells.begin(), surface.cells.end()).size()), cells);
+    EXPECT_EQ(Index(surface.nodes.size()), nodes.cols());
   }
 }
 
 /// A triangle lies in its assigned cell: all its corners are nodes of that cell.
 TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
   const ElementKind& kind = GetParam();
-  const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
+  const BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(kind.dimension()), 2));
   const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const Simplices surface = make_surface(in_space(body->space.nodes), body->space.cells, 1000000);
   const CellBlock& block = body->space.cells.front();
   for (Index t = 0; t < surface.count(); ++t) {
-    const Index* cell = block.cell(surface.cells[static_cast<std::size_t>(t)]);
+    const Index* cell = block.cell(surface.cells[std::size_t(t)]);
     for (int k = 0; k < 3; ++k) {
-      const Index node = surface.nodes[static_cast<std::size_t>(corner_of(surface, t, k))];
+      const Index node = surface.nodes[std::size_t(corner_of(surface, t, k))];
       EXPECT_NE(std::find(cell, cell + block.nodes_per_cell, node), cell + block.nodes_per_cell);
     }
   }
@@ -106,7 +106,7 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
 /// is the outline of the page's surface.
 TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
   const ElementKind& kind = GetParam();
-  const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
+  const BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(kind.dimension()), 2));
   const auto body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
   const DisplacementSpace& space = body->space;
   std::multiset<BodySurface::Piece> seen, shown;
@@ -115,7 +115,7 @@ TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
     seen.insert(piece);
   }
   const Simplices surface = make_surface(in_space(space.nodes), space.cells, 1000000);
-  const auto number = [&](int local) { return surface.nodes[static_cast<std::size_t>(local)]; };
+  const auto number = [&](int local) { return surface.nodes[std::size_t(local)]; };
   if (kind.dimension() == 2) {
     for (const auto& [side, times] : Sides(surface).times) {
       BodySurface::Piece piece{-1, number(side.first), number(side.second)};
@@ -164,9 +164,9 @@ TEST(ContactLine, FollowsASideFromItsLeftEnd) {
     }
     const Points nodes = in_space(body->space.nodes);
     const ContactLine line = make_contact_line(nodes, facets);
-    const std::size_t piece = static_cast<std::size_t>(4 * degree + 1);
+    const std::size_t piece = std::size_t(4 * degree + 1);
     ASSERT_EQ(line.nodes.size(), 2 * piece);
-    EXPECT_EQ(line.pieces, (std::vector<int>{0, static_cast<int>(piece)}));
+    EXPECT_EQ(line.pieces, (std::vector<int>{0, int(piece)}));
     for (std::size_t i = 0; i < piece; ++i) {
       EXPECT_NEAR(nodes(1, line.nodes[i]), 0.0, 1e-15) << "the lower one of two left ends first";
       EXPECT_NEAR(line.position[i], nodes(0, line.nodes[i]), 1e-14);

@@ -15,12 +15,12 @@ namespace {
 
 /// Index in `volume.nodes` of corner k of a tetrahedron.
 int vertex_of(const Simplices& volume, Index t, int k) {
-  return volume.corners[static_cast<std::size_t>(4 * t + k)];
+  return volume.corners[std::size_t(4 * t + k)];
 }
 
 double volume_of(const Points& nodes, const Simplices& volume, Index t) {
   const auto corner = [&](int k) {
-    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(vertex_of(volume, t, k))]));
+    return Eigen::Vector3d(nodes.col(volume.nodes[std::size_t(vertex_of(volume, t, k))]));
   };
   return std::abs((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0))) / 6.0;
 }
@@ -32,10 +32,10 @@ struct Faces {
     for (Index t = 0; t < volume.count(); ++t) {
       for (int k = 0; k < 4; ++k) {
         std::array<int, 3> face{};
-        for (std::size_t i = 0; i < 3; ++i) face[i] = vertex_of(volume, t, (k + 1 + static_cast<int>(i)) % 4);
+        for (std::size_t i = 0; i < 3; ++i) face[i] = vertex_of(volume, t, (k + 1 + int(i)) % 4);
         std::ranges::sort(face);
         ++times[face];
-        of_cells[face] += volume.sides[static_cast<std::size_t>(t)] >> k & 1;
+        of_cells[face] += volume.sides[std::size_t(t)] >> k & 1;
       }
     }
   }
@@ -54,9 +54,8 @@ TEST_P(VolumeOf, ACubeIsComplete) {
   const Index parts = kind.displacement_degree == 2 ? 8 : 1;
   EXPECT_EQ(volume.count(), cells * parts * (kind.shape == CellShape::hexahedron ? 6 : 1));
   std::map<int, double> of_cell;
-  for (Index t = 0; t < volume.count(); ++t)
-    of_cell[volume.cells[static_cast<std::size_t>(t)]] += volume_of(nodes, volume, t);
-  EXPECT_EQ(static_cast<Index>(of_cell.size()), cells);
+  for (Index t = 0; t < volume.count(); ++t) of_cell[volume.cells[std::size_t(t)]] += volume_of(nodes, volume, t);
+  EXPECT_EQ(Index(of_cell.size()), cells);
   double sum = 0.0;
   for (const auto& [cell, part] : of_cell) sum += part;
   EXPECT_NEAR(sum, 1.0, 1e-13);
@@ -68,7 +67,7 @@ TEST_P(VolumeOf, ACubeIsComplete) {
     EXPECT_LE(times, 2);
     EXPECT_TRUE(faces.of_cells.at(face) == 0 || faces.of_cells.at(face) == times);
     const auto corner = [&, &corners = face](std::size_t k) {
-      return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(corners[k])]));
+      return Eigen::Vector3d(nodes.col(volume.nodes[std::size_t(corners[k])]));
     };
     if (times != 1) continue;
     surface += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
@@ -85,7 +84,7 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const Simplices surface = make_surface(body->space.nodes, body->space.cells, 1000000);
   const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
     std::array<Index, 3> result{};
-    for (std::size_t k = 0; k < 3; ++k) result[k] = nodes[static_cast<std::size_t>(corners[k])];
+    for (std::size_t k = 0; k < 3; ++k) result[k] = nodes[std::size_t(corners[k])];
     std::ranges::sort(result);
     return result;
   };

@@ -88,7 +88,7 @@ TEST_P(FreeMotions, KeepEnergyAndAngularMomentumOfAStepTogether) {
 TEST_P(FreeMotions, MovePointsAsTheirRowsSay) {
   const Index d = GetParam();
   std::mt19937 random(3);
-  const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
+  const auto number = [&] { return 2.0 * double(random()) / 4294967296.0 - 1.0; };
   Stepped body(inertia(d));
   for (double& v : body.velocity) v = number();
   if (d == 2) body.velocity[3] = 0.0;

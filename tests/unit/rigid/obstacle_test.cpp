@@ -22,7 +22,7 @@ using Numbers = std::vector<double>;
 /// Returns a skew obstacle of any registered type except surfaces from files (see rigid_surface_test.cpp).
 std::unique_ptr<ObstacleShape> shape_of(const std::string& type, Index dimension, const std::string& side) {
   const auto cut = [&](Numbers values) {
-    values.resize(static_cast<std::size_t>(dimension));
+    values.resize(std::size_t(dimension));
     return values;
   };
   Parameters parameters;
@@ -67,7 +67,7 @@ class Obstacles : public testing::TestWithParam<std::tuple<std::string, Index, s
   [[nodiscard]] double rounding() const { return rounding_of(type()); }
   [[nodiscard]] Vector random_point() {
     Vector point(dimension());
-    for (double& x : point) x = 4.0 * static_cast<double>(random_()) / 4294967296.0 - 2.0;
+    for (double& x : point) x = 4.0 * double(random_()) / 4294967296.0 - 2.0;
     return point;
   }
   std::mt19937 random_{3};
@@ -172,7 +172,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
   for (const double radius : {0.1, 3.0}) {
     bool has_poles = false;
     const ObstacleSurface surface = obstacle->surface(random_point(), radius);
-    const auto corners = static_cast<std::size_t>(surface.corners());
+    const auto corners = std::size_t(surface.corners());
     ASSERT_EQ(corners, dimension() == 2 ? 2U : 4U);
     ASSERT_EQ(surface.cells.size() % corners, 0U);
     std::vector<int> uses(static_cast<std::size_t>(surface.points.cols()), 0);
@@ -181,7 +181,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
       for (std::size_t k = c; k < c + corners; ++k) {
         ASSERT_GE(surface.cells[k], 0);
         ASSERT_LT(surface.cells[k], surface.points.cols());
-        ++uses[static_cast<std::size_t>(surface.cells[k])];
+        ++uses[std::size_t(surface.cells[k])];
         at.emplace_back(surface.points.col(surface.cells[k]));
       }
       has_poles = has_poles || surface.cells[c + corners - 1] == surface.cells[c + corners - 2];
@@ -204,7 +204,7 @@ TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
     }
     EXPECT_EQ(std::ranges::count(uses, 0), 0);
     // About one node per cell, plus one at a pole or an end, instead of four per cell.
-    const auto cells = static_cast<Index>(surface.cells.size() / corners);
+    const auto cells = Index(surface.cells.size() / corners);
     const bool has_rims = obstacle->shape().centre().size() == 0 || (dimension() == 3 && !has_poles);
     EXPECT_LE(surface.points.cols(), obstacle->shape().is_flat() ? 4 : has_rims ? 3 * cells / 2 : cells + 1);
     for (Index i = 0; i < surface.points.cols(); ++i) {
@@ -297,13 +297,13 @@ TEST(Obstacle, RefusesAnExpressionWithoutASlope) {
 /// obstacle.
 TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
   std::mt19937 random(5);
-  const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
+  const auto number = [&] { return 2.0 * double(random()) / 4294967296.0 - 1.0; };
   for (const auto& [type, dimension] : types_and_dimensions()) {
     SCOPED_TRACE(type);
     const std::vector<std::string> motion{"0.3*sin(2*t)", "0.1 - t^2", "0.2*t"}, turn{"0.4*t", "0.9*t + t^2", "-0.3*t"};
     std::vector<Expression> displacement, rotation;
-    for (Index k = 0; k < dimension; ++k) displacement.emplace_back(motion[static_cast<std::size_t>(k)]);
-    for (Index k = 0; k < (dimension == 2 ? 1 : 3); ++k) rotation.emplace_back(turn[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < dimension; ++k) displacement.emplace_back(motion[std::size_t(k)]);
+    for (Index k = 0; k < (dimension == 2 ? 1 : 3); ++k) rotation.emplace_back(turn[std::size_t(k)]);
     const Vector about = Eigen::Vector3d(0.2, 0.5, -0.3).head(dimension);
     const Obstacle obstacle(shape_of(type, dimension, "outside"), make_path(displacement, rotation, dimension), 0.0,
                             about);

@@ -24,7 +24,7 @@ using Vector3 = Eigen::Vector3d;
 
 class RigidSurfaces : public testing::Test {
  protected:
-  [[nodiscard]] double number() { return 2.0 * static_cast<double>(random_()) / 4294967296.0 - 1.0; }
+  [[nodiscard]] double number() { return 2.0 * double(random_()) / 4294967296.0 - 1.0; }
   [[nodiscard]] Vector3 point(double reach) { return reach * Vector3(number(), number(), number()); }
   [[nodiscard]] std::unique_ptr<ObstacleShape> shape(const SurfaceFacets& facets, Parameters parameters = {}) {
     write_text_stl(facets, folder_.file("body.stl"));

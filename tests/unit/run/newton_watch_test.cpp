@@ -16,7 +16,7 @@ int warns_after(NewtonWatch& watch, const std::vector<int>& iterations) {
   for (std::size_t k = 0; k < iterations.size(); ++k) {
     if (!watch.enter_step(iterations[k], 0.5)) continue;
     EXPECT_EQ(warned, 0) << "it warns twice";
-    warned = static_cast<int>(k) + 1;
+    warned = int(k) + 1;
   }
   return warned;
 }

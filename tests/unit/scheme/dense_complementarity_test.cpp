@@ -18,7 +18,7 @@ TEST(DenseComplementarity, HoldsForRandomProblemsFromAnyStart) {
     const Vector b = h.diagonal().cwiseProduct(Vector::Random(n));
     Vector first_answer;
     for (const char start : {'\0', '\1'}) {
-      const Vector r = dense_complementarity(h, b, std::vector<char>(static_cast<std::size_t>(n), start));
+      const Vector r = dense_complementarity(h, b, std::vector<char>(std::size_t(n), start));
       const Vector y = h * r - b;
       const double size = b.lpNorm<Eigen::Infinity>();
       EXPECT_GE(r.minCoeff(), 0.0);

@@ -63,10 +63,10 @@ TEST(StepEquations, PrescribeWhatSupportsDo) {
     StepEquations equations;
     Stage stage;
     equations.prescribe(
-        problem, 0.2, [](Index dof, double value) { return value - static_cast<double>(dof); }, stage);
+        problem, 0.2, [](Index dof, double value) { return value - double(dof); }, stage);
     for (Index i = 0; i < wanted.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      EXPECT_EQ(stage.right_hand_side.prescribed[i], wanted[i] - static_cast<double>(dof));
+      const Index dof = problem.supports.dofs()[std::size_t(i)];
+      EXPECT_EQ(stage.right_hand_side.prescribed[i], wanted[i] - double(dof));
     }
     break;
   }
@@ -82,7 +82,7 @@ TEST(StepEquations, LetMasslessDofsFollow) {
   state.velocity = state.acceleration = 7.0 * ones;
   follow_without_inertia(problem, ones, 0.5, state);
   for (Index dof = 0; dof < problem.dof_count(); ++dof) {
-    const bool is_massless = problem.is_massless[static_cast<std::size_t>(dof)] != 0;
+    const bool is_massless = problem.is_massless[std::size_t(dof)] != 0;
     EXPECT_EQ(state.velocity[dof], is_massless ? 2.0 : 7.0);
     EXPECT_EQ(state.acceleration[dof], is_massless ? 0.0 : 7.0);
   }

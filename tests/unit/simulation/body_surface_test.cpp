@@ -77,7 +77,7 @@ TEST(BodySurface, KnowsTheDistanceToABoxWhereverItHasMovedTo) {
       const auto points = [&](const auto& check) {
         for (int i = 0; i < 300; ++i) {
           Eigen::Vector3d point = Eigen::Vector3d::Zero();
-          for (int k = 0; k < d; ++k) point[k] = -0.5 + 2.0 * static_cast<double>(random()) / 4294967295.0;
+          for (int k = 0; k < d; ++k) point[k] = -0.5 + 2.0 * double(random()) / 4294967295.0;
           check(point);
         }
       };

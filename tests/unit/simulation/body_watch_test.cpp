@@ -34,9 +34,9 @@ struct TwoSquares {
     positions.conservativeResize(2, first + row * row);
     for (Index j = 0; j < row; ++j) {
       for (Index i = 0; i < row; ++i) {
-        positions.col(first + j * row + i) << x + edge * static_cast<double>(i), y + edge * static_cast<double>(j);
+        positions.col(first + j * row + i) << x + edge * double(i), y + edge * double(j);
         bodies.of_node.push_back(bodies.count);
-        size.push_back(std::sqrt(2.0) * edge * static_cast<double>(count));
+        size.push_back(std::sqrt(2.0) * edge * double(count));
       }
     }
     for (Index j = 0; j < count; ++j) {
@@ -56,9 +56,9 @@ struct TwoSquares {
   [[nodiscard]] std::vector<ContactNodeAllowance> facing_nodes(double of_lower, double of_upper) const {
     std::vector<ContactNodeAllowance> result;
     for (Index node = 0; node < positions.cols(); ++node) {
-      const auto entry = static_cast<Index>(result.size());
+      const auto entry = Index(result.size());
       const double y = positions(1, node);
-      const bool is_upper = bodies.of_node[static_cast<std::size_t>(node)] == 1;
+      const bool is_upper = bodies.of_node[std::size_t(node)] == 1;
       if (is_upper ? y < 1.25 : y > 0.95)
         result.push_back({node, is_upper ? 0 : 1, 7, entry, is_upper ? of_upper : of_lower});
     }
@@ -68,7 +68,7 @@ struct TwoSquares {
   [[nodiscard]] Vector displacement(double x, double y) const {
     Vector result = Vector::Zero(2 * positions.cols());
     for (Index node = 0; node < positions.cols(); ++node) {
-      if (bodies.of_node[static_cast<std::size_t>(node)] == 1) result.segment<2>(2 * node) << x, y;
+      if (bodies.of_node[std::size_t(node)] == 1) result.segment<2>(2 * node) << x, y;
     }
     return result;
   }
@@ -80,10 +80,9 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
   // Its lower side is at 1.2 − t. Its corner nodes are 0.3 from the sides: until then 1 − y is their depth.
   const double speed = 1.0, step = 1e-3;
   long steps = 0;
-  for (; static_cast<double>(steps) * step < 0.35; ++steps) {
-    watch.check(squares.displacement(0.0, -speed * static_cast<double>(steps) * step),
-                static_cast<double>(steps) * step, false);
-    const double depth = static_cast<double>(steps) * step - 0.2;
+  for (; double(steps) * step < 0.35; ++steps) {
+    watch.check(squares.displacement(0.0, -speed * double(steps) * step), double(steps) * step, false);
+    const double depth = double(steps) * step - 0.2;
     if (depth < 0.0) {
       EXPECT_TRUE(watch.pairs().empty()) << depth;
     } else if (depth > 0.25 * edge) {
@@ -94,7 +93,7 @@ TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
     }
   }
   EXPECT_LT(watch.checks(), steps / 8);
-  const double end = static_cast<double>(steps - 1) * step;
+  const double end = double(steps - 1) * step;
   watch.check(squares.displacement(0.0, -speed * end), end, true);
   ASSERT_EQ(watch.pairs().size(), 1U);
   const BodyPair& pair = watch.pairs()[0];

@@ -57,7 +57,7 @@ TEST(HistoryColumns, OfTheBalanceAddUpToItsResidual) {
 class NodeCount final : public QuantitySensor<NodeCount> {
  public:
   NodeCount(const ProbeContext& setting, const ProbeTargets& targets)
-      : QuantitySensor(setting.name + ".", setting.problem), count_(static_cast<double>(targets.nodes.size())) {}
+      : QuantitySensor(setting.name + ".", setting.problem), count_(double(targets.nodes.size())) {}
   static const Quantities& quantities() {
     static const Quantities all{{{"nodes", "1", "number of nodes"}, member_value(&NodeCount::count_)}};
     return all;
@@ -97,7 +97,7 @@ TEST(ProbeKinds, OfAProgramAreReadFoundAndRecorded) {
     for (Index facet = 0; facet < block.size(); ++facet)
       nodes.insert(block.cell(facet), block.cell(facet) + block.nodes_per_cell);
   }
-  EXPECT_EQ(row[column_index(recorder.columns(), "skin.nodes")], static_cast<double>(nodes.size()));
+  EXPECT_EQ(row[column_index(recorder.columns(), "skin.nodes")], double(nodes.size()));
   EXPECT_NE(column_reference().find("| `NAME.nodes` | 1 | probes with `count` | number of nodes |"), std::string::npos);
   EXPECT_THROW(CaseRun{text + "about = [0, 0]\n"}, Error);  // a key of another kind
   probe_registry().remove("count");

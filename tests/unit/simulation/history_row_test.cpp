@@ -46,7 +46,7 @@ void expect_row(const SemidiscreteProblem& problem, const std::vector<std::strin
   EXPECT_NEAR(at("elastic_energy"), wanted.elastic, 1e-12 * wanted.elastic);
   const std::string axes = "xyz";
   for (int k = 0; k < 3; ++k) {
-    const std::string axis(1, axes[static_cast<std::size_t>(k)]);
+    const std::string axis(1, axes[std::size_t(k)]);
     if (k < problem.dimension) {
       EXPECT_NEAR(at("momentum_" + axis), wanted.momentum[k], 1e-13 * wanted.size);
     }

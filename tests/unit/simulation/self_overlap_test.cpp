@@ -16,23 +16,21 @@ std::vector<Two> refined(const std::vector<Two>& corners, int parts, bool closed
   std::vector<Two> result;
   for (std::size_t i = 0; i + (closed ? 0 : 1) < corners.size(); ++i) {
     for (int k = 0; k < parts; ++k)
-      result.emplace_back(corners[i] +
-                          static_cast<double>(k) / parts * (corners[(i + 1) % corners.size()] - corners[i]));
+      result.emplace_back(corners[i] + double(k) / parts * (corners[(i + 1) % corners.size()] - corners[i]));
   }
   if (!closed) result.push_back(corners.back());
   return result;
 }
 
 Points as_points(const std::vector<Two>& outline) {
-  Points result(2, static_cast<Index>(outline.size()));
-  for (std::size_t i = 0; i < outline.size(); ++i) result.col(static_cast<Index>(i)) = outline[i];
+  Points result(2, Index(outline.size()));
+  for (std::size_t i = 0; i < outline.size(); ++i) result.col(Index(i)) = outline[i];
   return result;
 }
 
 std::vector<BodySurface::Piece> segments(std::size_t count, bool closed = true) {
   std::vector<BodySurface::Piece> result;
-  for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i)
-    result.push_back({static_cast<Index>(i), static_cast<Index>((i + 1) % count), -1});
+  for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i) result.push_back({Index(i), Index((i + 1) % count), -1});
   return result;
 }
 
@@ -64,7 +62,7 @@ TEST(SelfOverlap, IsThatOfTheArmsOfAClamp) {
         const BodySurface surface(as_points(outline(overlap)), segments(reference.size()));
         const SelfOverlap test(surface, false);
         for (std::size_t i = 0; i < reference.size(); ++i) {
-          const auto found = test.at(static_cast<int>(i));
+          const auto found = test.at(int(i));
           const double depth = found ? found->depth : 0.0;
           if (overlap <= 0.0) {
             EXPECT_LT(depth, 1e-14 * size) << overlap << ' ' << i;
@@ -91,7 +89,7 @@ TEST(SelfOverlap, KnowsHowFarAwayWhatFacesANodeIs) {
   int between = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     double clearance = 0.0;
-    EXPECT_FALSE(test.at(static_cast<int>(i), &clearance));
+    EXPECT_FALSE(test.at(int(i), &clearance));
     const Two& at = reference[i];
     if (is_between(at)) {
       EXPECT_NEAR(clearance, 1.0, 1e-12);
@@ -105,7 +103,7 @@ TEST(SelfOverlap, KnowsHowFarAwayWhatFacesANodeIs) {
 
 TEST(SelfOverlap, IsTheSameInSpace) {
   const std::vector<Two> reference = refined(clamp, 6);
-  const Index count = static_cast<Index>(reference.size());
+  const Index count = Index(reference.size());
   constexpr Index layers = 5;
   Points nodes(3, count * layers);
   std::vector<BodySurface::Piece> pieces;
@@ -113,8 +111,8 @@ TEST(SelfOverlap, IsTheSameInSpace) {
     pieces.clear();
     for (Index z = 0; z < layers; ++z) {
       for (Index i = 0; i < count; ++i) {
-        const Two point = closed(reference[static_cast<std::size_t>(i)], overlap);
-        nodes.col(z * count + i) = Vector3(point[0], point[1], 0.3 * static_cast<double>(z));
+        const Two point = closed(reference[std::size_t(i)], overlap);
+        nodes.col(z * count + i) = Vector3(point[0], point[1], 0.3 * double(z));
         const Index a = z * count + i, b = z * count + (i + 1) % count;
         if (z + 1 == layers) continue;
         pieces.push_back({a, b, b + count});
@@ -125,11 +123,11 @@ TEST(SelfOverlap, IsTheSameInSpace) {
     const SelfOverlap test(surface, false);
     for (Index z = 1; z + 1 < layers; ++z) {
       for (Index i = 0; i < count; ++i) {
-        const auto found = test.at(static_cast<int>(z * count + i));
+        const auto found = test.at(int(z * count + i));
         if (overlap <= 0.0) {
           EXPECT_LT(found ? found->depth : 0.0, 1e-14);
         }
-        if (overlap <= 0.0 || !is_between(reference[static_cast<std::size_t>(i)])) continue;
+        if (overlap <= 0.0 || !is_between(reference[std::size_t(i)])) continue;
         ASSERT_TRUE(found) << i;
         EXPECT_NEAR(found->depth, overlap, 1e-13);
       }
@@ -145,9 +143,9 @@ TEST(SelfOverlap, GoesOnBeyondAnAxis) {
     std::vector<Two> outline;
     std::vector<BodySurface::Piece> pieces;
     for (const double radius : {2.0, 1.0}) {
-      const auto first = static_cast<Index>(outline.size());
+      const auto first = Index(outline.size());
       for (int k = 0; k <= parts; ++k) {
-        const double angle = (radius > 1.5 ? 1.0 : -1.0) * std::numbers::pi * (static_cast<double>(k) / parts - 0.5);
+        const double angle = (radius > 1.5 ? 1.0 : -1.0) * std::numbers::pi * (double(k) / parts - 0.5);
         const bool on_axis = k == 0 || k == parts;
         Two point(on_axis ? 0.0 : radius * std::cos(angle), radius * std::sin(angle));
         if (point[1] > 0.0) point[1] -= (2.0 + overlap) * std::clamp(1.2 - 2.0 * point[0], 0.0, 1.0);
@@ -177,7 +175,7 @@ TEST(SelfOverlap, IsNoneOfTubes) {
       const BodySurface surface(as_points(outline), segments(outline.size()));
       const SelfOverlap test(surface, true);
       for (std::size_t i = 0; i < outline.size(); ++i)
-        EXPECT_FALSE(test.at(static_cast<int>(i))) << bore << ' ' << parts << ' ' << i;
+        EXPECT_FALSE(test.at(int(i))) << bore << ' ' << parts << ' ' << i;
     }
   }
 }
@@ -199,7 +197,7 @@ TEST(SelfOverlap, IsNoneOfBodiesThatDoNotFold) {
     const std::vector<Two> outline = refined(corners, 3);
     const BodySurface surface(as_points(outline), segments(outline.size()));
     const SelfOverlap test(surface, false);
-    for (std::size_t i = 0; i < outline.size(); ++i) EXPECT_FALSE(test.at(static_cast<int>(i))) << i;
+    for (std::size_t i = 0; i < outline.size(); ++i) EXPECT_FALSE(test.at(int(i))) << i;
   }
 }
 

@@ -38,7 +38,7 @@ State displaced(const CaseRun& run, double x, double y, bool pressed, double tim
   State state = run.state();
   const ConnectedBodies bodies = find_connected_bodies(run.model().space);
   for (std::size_t node = 0; node < bodies.of_node.size(); ++node) {
-    if (bodies.of_node[node] == 1) state.displacement.segment<2>(2 * static_cast<Index>(node)) << x, y - gap;
+    if (bodies.of_node[node] == 1) state.displacement.segment<2>(2 * Index(node)) << x, y - gap;
   }
   state.forces.normal_reaction.setConstant(run.problem().contact.size(), pressed ? 1.0 : 0.0);
   state.time = time;

@@ -95,8 +95,8 @@ int iterations_of(const SemidiscreteProblem& problem, const OperatorCoefficients
   const StageProduct product(problem, coefficients);
   const std::vector<char> solved(static_cast<std::size_t>(problem.dof_count()), 1);
   const auto preconditioner = make_block_jacobi(product.diagonal_blocks(), problem.dimension, solved);
-  Vector residual = Vector::NullaryExpr(problem.dof_count(),
-                                        [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
+  Vector residual =
+      Vector::NullaryExpr(problem.dof_count(), [](Index i) { return std::sin(0.9 * double(i * i % 1013)); });
   Vector x = Vector::Zero(problem.dof_count());
   ConjugateGradients gradients;
   const double target = tolerance * gradients.norm(*preconditioner, residual);

@@ -14,12 +14,12 @@ ContactConditions conditions_with_gaps(const Vector& gaps) {
   ContactConditions conditions;
   conditions.gap.offset = gaps;
   conditions.gap.rounding = Vector::Constant(gaps.size(), 1e-15);
-  conditions.eligible.assign(static_cast<std::size_t>(gaps.size()), 1);
+  conditions.eligible.assign(std::size_t(gaps.size()), 1);
   return conditions;
 }
 
 Vector gaps(std::initializer_list<double> values) {
-  return Eigen::Map<const Vector>(values.begin(), static_cast<Index>(values.size()));
+  return Eigen::Map<const Vector>(values.begin(), Index(values.size()));
 }
 
 using PointNumbers = std::vector<Index>;
@@ -104,7 +104,7 @@ TEST(ContactCandidates, DoubleAtMost) {
   for (PointNumbers found = candidates.penetrating(conditions, fallen, false); !found.empty();
        found = candidates.penetrating(conditions, fallen, false), ++rounds) {
     EXPECT_LE(found.size(), std::max<std::size_t>(32, candidates.points().size()));
-    EXPECT_EQ(found.front(), static_cast<Index>(candidates.points().size())) << "the deepest first";
+    EXPECT_EQ(found.front(), Index(candidates.points().size())) << "the deepest first";
     candidates.add_candidates(found);
   }
   EXPECT_EQ(candidates.points().size(), 1000U);
@@ -138,13 +138,13 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   const Index count = 10000;
   ContactCandidates candidates(count);
   Vector distance(count);
-  for (Index i = 0; i < count; ++i) distance[i] = static_cast<double>(i * 7919 % count + 1);
+  for (Index i = 0; i < count; ++i) distance[i] = double(i * 7919 % count + 1);
   const ContactConditions conditions = conditions_with_gaps(distance);
   candidates.update_history(conditions, Vector::Constant(count, -1e5), 0);
   const PointNumbers taken = approaching(candidates, conditions);
   ASSERT_GE(taken.size(), 100U);
   EXPECT_LE(taken.size(), 600U);
-  for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
+  for (const Index point : taken) EXPECT_LE(distance[point], double(taken.size()));
   candidates.add_candidates(taken);
   EXPECT_EQ(approaching(candidates, conditions), PointNumbers{}) << "the others are asked for where they penetrate";
   // Many loaded points have many neighbours.
@@ -163,22 +163,22 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
   const auto height = [&](double turn) {
     Vector result(count);
     for (Index i = 0; i < count; ++i)
-      result[i] = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) / static_cast<double>(count) - turn));
+      result[i] = 1.0 - std::cos(2.0 * std::numbers::pi * (double(i) / double(count) - turn));
     return result;
   };
   std::vector<char> came(static_cast<std::size_t>(count), 0);
   std::size_t most = 0;
   for (int step = 0; step < steps; ++step) {
-    const Vector now = height(static_cast<double>(step) / steps);
+    const Vector now = height(double(step) / steps);
     const ContactConditions conditions = conditions_with_gaps(now);
     if (const PointNumbers kept = worth_keeping(candidates, conditions); !kept.empty()) {
       candidates.clear();
       candidates.add_candidates(kept);
     }
     candidates.add_candidates(approaching(candidates, conditions));
-    for (const Index point : candidates.points()) came[static_cast<std::size_t>(point)] = 1;
+    for (const Index point : candidates.points()) came[std::size_t(point)] = 1;
     most = std::max(most, candidates.points().size());
-    candidates.update_history(conditions, height(static_cast<double>(step + 1) / steps) - now, 5);
+    candidates.update_history(conditions, height(double(step + 1) / steps) - now, 5);
   }
   EXPECT_EQ(std::ranges::count(came, 1), count);
   EXPECT_LE(most, 3000U);

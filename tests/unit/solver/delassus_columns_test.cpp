@@ -31,7 +31,7 @@ SparseMatrix rows_of_h(Index size, Index count, unsigned seed) {
   std::mt19937 random(seed);
   SparseMatrix transposed(size, count);
   for (Index row = 0; row < count; ++row) {
-    const auto unknown = static_cast<Index>(random() % static_cast<unsigned>(size - 1));
+    const auto unknown = Index(random() % unsigned(size - 1));
     transposed.insert(unknown, row) = uniform(random);
     if (row % 3 == 0) transposed.insert(unknown + 1, row) = uniform(random);
   }
@@ -52,7 +52,7 @@ TEST_F(ContactColumnsTest, GiveTheCondensedOperator) {
   Matrix w, h(0, size);
   // Added in groups of several sizes, with and without a full block.
   for (const Index count : {5, 1, 60, 24}) {
-    const SparseMatrix transposed = rows_of_h(size, count, static_cast<unsigned>(count));
+    const SparseMatrix transposed = rows_of_h(size, count, unsigned(count));
     const Matrix before = w;
     columns.append(transposed, w);
     const Index rows = h.rows();
@@ -64,7 +64,7 @@ TEST_F(ContactColumnsTest, GiveTheCondensedOperator) {
   const Matrix expected = h * inverse_ * h.transpose();
   EXPECT_LE((w - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
   EXPECT_TRUE(w == w.transpose());
-  EXPECT_LE(columns.entries(), static_cast<std::size_t>(size * h.rows()));
+  EXPECT_LE(columns.entries(), std::size_t(size * h.rows()));
 }
 
 TEST_F(ContactColumnsTest, GiveMotionsAndTakeReactions) {

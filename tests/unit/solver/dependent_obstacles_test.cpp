@@ -78,7 +78,7 @@ TEST(DependentObstacles, HoldAnyBodyUnderAnyScheme) {
   for (unsigned seed = 0; seed < samples(60); ++seed) {
     std::mt19937 random(seed);
     const auto pick = [&](auto... values) {
-      const double all[] = {static_cast<double>(values)...};
+      const double all[] = {double(values)...};
       return all[random() % sizeof...(values)];
     };
     const Pairing& pairing = pairings[random() % std::size(pairings)];

@@ -23,7 +23,7 @@ Path random_path(unsigned seed, Index count) {
   const auto entry = [&] { return number(engine); };
   const Matrix b = Matrix::NullaryExpr(count, count, entry);
   Path path{b * b.transpose() + 0.05 * Matrix::Identity(count, count), Vector::NullaryExpr(count, entry),
-            Vector::NullaryExpr(count, entry), std::vector<char>(static_cast<std::size_t>(count), 1)};
+            Vector::NullaryExpr(count, entry), std::vector<char>(std::size_t(count), 1)};
   for (char& may : path.eligible) may = entry() < -0.7 ? 0 : 1;
   return path;
 }
@@ -39,19 +39,18 @@ Vector by_enumeration(const Path& path, const Vector& q) {
     for (Index i = 0; i < count; ++i) {
       if ((set >> i & 1) == 0) continue;
       pressing.push_back(i);
-      allowed = allowed && path.eligible[static_cast<std::size_t>(i)] != 0;
+      allowed = allowed && path.eligible[std::size_t(i)] != 0;
     }
     if (!allowed) continue;
     Vector r = Vector::Zero(count);
     if (!pressing.empty()) {
       const Matrix block = path.u(pressing, pressing);
       const Vector solution = block.partialPivLu().solve(-Vector(q(pressing)));
-      for (std::size_t i = 0; i < pressing.size(); ++i) r[pressing[i]] = solution[static_cast<Index>(i)];
+      for (std::size_t i = 0; i < pressing.size(); ++i) r[pressing[i]] = solution[Index(i)];
     }
     const Vector y = q + path.u * r;
     double wrong = std::max(0.0, -r.minCoeff());
-    for (Index i = 0; i < count; ++i)
-      wrong = std::max(wrong, path.eligible[static_cast<std::size_t>(i)] != 0 ? -y[i] : 0.0);
+    for (Index i = 0; i < count; ++i) wrong = std::max(wrong, path.eligible[std::size_t(i)] != 0 ? -y[i] : 0.0);
     if (wrong < least) {
       least = wrong;
       best = r;
@@ -63,7 +62,7 @@ Vector by_enumeration(const Path& path, const Vector& q) {
 
 TEST(NormalPath, EndsAndItsMeanAreRight) {
   for (unsigned seed = 0; seed < 200; ++seed) {
-    const Path path = random_path(seed, 1 + static_cast<Index>(seed % 6));
+    const Path path = random_path(seed, 1 + Index(seed % 6));
     NormalPath found;
     found.prepare(path.u, seed % 3 == 0 ? PathMatrix::semidefinite : PathMatrix::definite);
     const Vector start = by_enumeration(path, path.q0), end = by_enumeration(path, path.q1);
@@ -106,7 +105,7 @@ TEST(NormalPath, DerivativesAreThoseOfDifferences) {
 /// Without symmetry, as under friction proportional to the normal reactions, the conditions hold along the path.
 TEST(NormalPath, TakesMatricesWithoutSymmetry) {
   for (unsigned seed = 0; seed < 200; ++seed) {
-    Path path = random_path(seed, 1 + static_cast<Index>(seed % 6));
+    Path path = random_path(seed, 1 + Index(seed % 6));
     const Matrix skew = path.u.triangularView<Eigen::StrictlyUpper>();
     path.u += 0.3 * (skew - skew.transpose());
     NormalPath found;
@@ -136,8 +135,7 @@ TEST(NormalPath, TakesPointsThatDependOnOneAnother) {
     const Matrix b = Matrix::NullaryExpr(motions, motions, entry);
     const Matrix compliance = b * b.transpose() + 0.1 * Matrix::Identity(motions, motions);
     const Path path{weights * compliance * weights.transpose(), weights * Vector::NullaryExpr(motions, entry),
-                    weights * Vector::NullaryExpr(motions, entry),
-                    std::vector<char>(static_cast<std::size_t>(count), 1)};
+                    weights * Vector::NullaryExpr(motions, entry), std::vector<char>(std::size_t(count), 1)};
     NormalPath found;
     found.prepare(path.u, PathMatrix::semidefinite);
     const std::vector<char> all(static_cast<std::size_t>(count), 1);

@@ -17,7 +17,7 @@ class Diagonal final : public Preconditioner {
  public:
   Diagonal(const SparseMatrix& part, const std::vector<char>& solved) : inverse_(part.diagonal().cwiseInverse()) {
     for (std::size_t dof = 0; dof < solved.size(); ++dof) {
-      if (solved[dof] == 0) inverse_[static_cast<Index>(dof)] = 1.0;
+      if (solved[dof] == 0) inverse_[Index(dof)] = 1.0;
     }
     ++diagonals_made;
   }

@@ -27,20 +27,20 @@ class RandomStep {
     for (Index i = 0; i < points; ++i) {
       take_state(i, start, q0, false);
       take_state(i, end, q1, true);
-      pressing.push_back(start[row_offset[static_cast<std::size_t>(i)]] > 0.0 ? 1 : 0);
+      pressing.push_back(start[row_offset[std::size_t(i)]] > 0.0 ? 1 : 0);
     }
     q0 -= u * start;
     q1 -= u * end;
-    eligible.assign(static_cast<std::size_t>(points), 1);
+    eligible.assign(std::size_t(points), 1);
   }
 
   [[nodiscard]] ReactionPath::Step step() const { return {q0, q1, start, end, friction, eligible, pressing}; }
   [[nodiscard]] double gap_at_start(Index point) const {
-    const Index row = row_offset[static_cast<std::size_t>(point)];
+    const Index row = row_offset[std::size_t(point)];
     return q0[row] + u.row(row).dot(start);
   }
   [[nodiscard]] bool slips_at_end(Index point) const {
-    return slips_[static_cast<std::size_t>(point)] && end[row_offset[static_cast<std::size_t>(point)]] > 0.0;
+    return slips_[std::size_t(point)] && end[row_offset[std::size_t(point)]] > 0.0;
   }
 
   Matrix u;
@@ -53,8 +53,8 @@ class RandomStep {
 
   /// Draws a state of Coulomb's law at one point: reactions, and gap and slip (zero at the start) in `motion`.
   void take_state(Index point, Vector& reaction, Vector& motion, bool is_end) {
-    const Index row = row_offset[static_cast<std::size_t>(point)];
-    const Index tangents = row_offset[static_cast<std::size_t>(point) + 1] - row - 1;
+    const Index row = row_offset[std::size_t(point)];
+    const Index tangents = row_offset[std::size_t(point) + 1] - row - 1;
     if (number() < -0.3) {
       motion[row] = std::abs(number());
       for (Index k = 1; k <= tangents && is_end; ++k) motion[row + k] = number();
@@ -64,7 +64,7 @@ class RandomStep {
     Vector direction = Vector::NullaryExpr(tangents, [&] { return number(); });
     direction /= direction.norm();
     const double limit = friction[point] * reaction[row];
-    const bool slips = slips_[static_cast<std::size_t>(point)];
+    const bool slips = slips_[std::size_t(point)];
     reaction.segment(row + 1, tangents) = (slips ? limit : 0.6 * limit) * direction;
     if (slips && is_end) motion.segment(row + 1, tangents) = -std::abs(number()) * direction;
   }
@@ -76,15 +76,15 @@ class RandomStep {
 TEST(ReactionPath, LosesEnergyAtEachPartAndStaysOnTheCone) {
   int on_cone = 0;
   for (unsigned seed = 0; seed < 600; ++seed) {
-    const RandomStep random(seed, 1 + static_cast<Index>(seed % 5), 2 + static_cast<Index>(seed % 2));
+    const RandomStep random(seed, 1 + Index(seed % 5), 2 + Index(seed % 2));
     ReactionPath path;
     path.prepare(random.u, random.row_offset, true);
     ASSERT_TRUE(path.follow(random.step())) << seed;
     double at_start = 0.0;
     for (Index i = 0; i < random.friction.size(); ++i) {
       at_start += path.start()[i] * random.gap_at_start(i);
-      const Index row = random.row_offset[static_cast<std::size_t>(i)];
-      const Index tangents = random.row_offset[static_cast<std::size_t>(i) + 1] - row - 1;
+      const Index row = random.row_offset[std::size_t(i)];
+      const Index tangents = random.row_offset[std::size_t(i) + 1] - row - 1;
       EXPECT_GE(path.mean()[row], -1e-12) << seed;
       if (!random.slips_at_end(i)) continue;
       const Vector along = random.end.segment(row + 1, tangents) / random.end[row] * path.mean()[row];
@@ -160,7 +160,7 @@ TEST(PressingSet, KeepsTheInverse) {
   for (int k = 0; k < 400; ++k) {
     const int changes = k % 7 == 0 ? 5 : 1;
     for (int c = 0; c < changes; ++c) {
-      char& mark = marks[static_cast<std::size_t>(engine() % count)];
+      char& mark = marks[std::size_t(engine() % count)];
       mark = mark == 0 ? 1 : 0;
     }
     ASSERT_TRUE(set.set_points(marks));
@@ -172,7 +172,7 @@ TEST(PressingSet, KeepsTheInverse) {
     set.add_inverse(1.0, sum);
     EXPECT_LT((sum * q + r).norm(), 1e-12 * (1.0 + r.norm()));
     for (Index i = 0; i < count; ++i) {
-      if (marks[static_cast<std::size_t>(i)] != 0) {
+      if (marks[std::size_t(i)] != 0) {
         EXPECT_NEAR(y[i], 0.0, 1e-9 * (1.0 + r.norm()));
       } else {
         EXPECT_EQ(r[i], 0.0);

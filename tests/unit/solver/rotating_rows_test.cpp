@@ -21,7 +21,7 @@ struct TurningPoints {
     Triplets entries, turning;
     for (Index i = 0; i < points; ++i) {
       for (Index j = 0; j < 2; ++j) {
-        const Eigen::Triplet<double> entry(static_cast<int>(i), static_cast<int>(2 * i + j), number());
+        const Eigen::Triplet<double> entry(static_cast<int>(i), int(2 * i + j), number());
         entries.push_back(entry);
         if (i % 2 == 0) turning.push_back(entry);
       }
@@ -33,7 +33,7 @@ struct TurningPoints {
     rows.normals.resize(d, points);
     turn();
   }
-  [[nodiscard]] double number() { return static_cast<double>(random()) / 2147483648.0 - 1.0; }
+  [[nodiscard]] double number() { return double(random()) / 2147483648.0 - 1.0; }
 
   /// Rotates the directions. Point 4 slips along one tangent alone.
   void turn() {
@@ -44,10 +44,10 @@ struct TurningPoints {
       rows.normals.col(i) = q.col(0);
       for (SparseRowMatrix::InnerIterator c(trace, i); c; ++c) {
         for (Index k = 0; k < d; ++k) {
-          const int dof = static_cast<int>(c.col() * d + k);
-          gap.emplace_back(static_cast<int>(i), dof, c.value() * q(k, 0));
+          const int dof = int(c.col() * d + k);
+          gap.emplace_back(int(i), dof, c.value() * q(k, 0));
           for (int j = 1; j < d; ++j)
-            slip.emplace_back(static_cast<int>(i * (d - 1)) + j - 1, dof, i == 4 && j == 2 ? 0.0 : c.value() * q(k, j));
+            slip.emplace_back(int(i * (d - 1)) + j - 1, dof, i == 4 && j == 2 ? 0.0 : c.value() * q(k, j));
         }
       }
     }
@@ -94,7 +94,7 @@ TEST(RotatingRows, AreThoseOfConstantColumnsInOtherDirections) {
   for (int turn = 0; turn < 3; ++turn) {
     std::vector<Matrix> h_parts, e_parts;
     for (Index i = 0; i < TurningPoints::points; ++i) {
-      turned.read_directions(points.rows, i, static_cast<std::size_t>(i));
+      turned.read_directions(points.rows, i, std::size_t(i));
       h_parts.push_back(points.rows_of(i, has_friction(i)));
       e_parts.push_back(points.columns_of(i, has_friction(i)));
     }

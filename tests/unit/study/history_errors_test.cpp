@@ -15,7 +15,7 @@ RunHistory history(int steps, const std::function<double(double)>& x, const std:
   run.summary.step = 1.0 / steps;
   run.table.names = {"time", "v_x", "v_y", "kinetic_energy"};
   for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
+    const double t = double(i) / steps;
     run.table.columns["time"].push_back(t);
     run.table.columns["v_x"].push_back(x(t));
     run.table.columns["v_y"].push_back(y(t));

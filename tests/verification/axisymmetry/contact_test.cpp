@@ -268,7 +268,7 @@ TEST(Axisymmetry, ImpactsAreAlongTheAxis) {
     CaseRun run(ball_case(2, "equivalent", "", "friction = 0.2\n", normal));
     const SemidiscreteProblem& problem = run.problem();
     ImpactRecorder impacts(problem, run.scheme(), run.state(), run.model().contact_pairs,
-                           std::vector<int>(static_cast<std::size_t>(problem.nodes.cols()), 0), {0.3});
+                           std::vector<int>(std::size_t(problem.nodes.cols()), 0), {0.3});
     run.run([&] { impacts.enter_step(run.state(), 0.0); }, false);
     ASSERT_FALSE(impacts.impacts().empty());
     const Impact impact = impacts.impacts().front();

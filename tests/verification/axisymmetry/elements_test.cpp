@@ -247,20 +247,20 @@ Vector equilibrium(const MeshedBody& test, const Vector& load, const std::functi
   std::vector<int> number(static_cast<std::size_t>(test.space.dof_count()), -1);
   int count = 0;
   for (std::size_t dof = 0; dof < number.size(); ++dof) {
-    const auto node = static_cast<Index>(dof / 2);
-    if (!is_held(test.space.nodes.col(node), static_cast<int>(dof % 2))) number[dof] = count++;
+    const auto node = Index(dof / 2);
+    if (!is_held(test.space.nodes.col(node), int(dof % 2))) number[dof] = count++;
   }
   const SparseMatrix inner =
       extract(assemble_stiffness(test.body, node_graph(test.space)), number, count, number, count);
   Vector right(count);
   for (std::size_t dof = 0; dof < number.size(); ++dof) {
-    if (number[dof] >= 0) right[number[dof]] = load[static_cast<Index>(dof)];
+    if (number[dof] >= 0) right[number[dof]] = load[Index(dof)];
   }
   const Eigen::SimplicialLDLT<SparseMatrix> factor(inner);
   const Vector found = factor.solve(right);
   Vector result = Vector::Zero(test.space.dof_count());
   for (std::size_t dof = 0; dof < number.size(); ++dof) {
-    if (number[dof] >= 0) result[static_cast<Index>(dof)] = found[number[dof]];
+    if (number[dof] >= 0) result[Index(dof)] = found[number[dof]];
   }
   return result;
 }
@@ -290,7 +290,7 @@ LameErrors errors_of(const MeshedBody& test, const Vector& displacement, const F
     Vector centre = Vector::Zero(2);
     const int vertices = vertex_count(cells.shape);
     for (int k = 0; k < vertices; ++k) centre += test.mesh.nodes.col(cells.cell(cell)[k]) / vertices;
-    const double found = stress[static_cast<std::size_t>(6 * cell + 5)];
+    const double found = stress[std::size_t(6 * cell + 5)];
     result.hoop += centre[0] * std::pow(found - hoop(centre), 2);
     stress_size += centre[0] * std::pow(hoop(centre), 2);
   }

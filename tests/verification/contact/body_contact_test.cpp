@@ -122,8 +122,8 @@ TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
       // The pressure on both sides, recovered from uniform reactions.
       const Vector pressure = boundary.pressure_recovery * boundary.weights;
       EXPECT_LT((pressure.array() - 1.0).abs().maxCoeff(), 1e-12);
-      EXPECT_EQ(pressure.size(), static_cast<Index>(facet_nodes(test->space, pair.facets).size() +
-                                                    facet_nodes(test->space, pair.opposite_facets).size()));
+      EXPECT_EQ(pressure.size(), Index(facet_nodes(test->space, pair.facets).size() +
+                                       facet_nodes(test->space, pair.opposite_facets).size()));
       EXPECT_LT(boundary.node_initial_gap.lpNorm<Eigen::Infinity>(), 1e-13);
     }
   }

@@ -30,8 +30,7 @@ std::unique_ptr<Obstacle> plane(const Vector& normal) {
 std::unique_ptr<MeshedBody> box(CellShape shape, int degree, double scale = 1.0) {
   const int d = dimension(shape);
   const PointMap map = affine_map(scale * Matrix::Identity(d, d), Vector::Zero(d));
-  return make_meshed_body(make_box_mesh({shape, std::vector<int>(static_cast<std::size_t>(d), 3), 1, 0.15, map}),
-                          degree);
+  return make_meshed_body(make_box_mesh({shape, std::vector<int>(std::size_t(d), 3), 1, 0.15, map}), degree);
 }
 
 ContactPair pair_of(const MeshedBody& test, const std::string& group, const Obstacle& obstacle,
@@ -103,7 +102,7 @@ TEST(ContactBoundary, HasNoFrictionWhereSupportsLeaveNoIndependentSlipIn2D) {
         make_contact_boundary(test->body, {pair_of(*test, "y0", *obstacle, "nodal")}, held_at_x0(*test, {held}));
     ASSERT_EQ(boundary.size(), 4);
     for (Index i = 0; i < boundary.size(); ++i) {
-      const bool at_support = test->space.nodes(0, boundary.nodes[static_cast<std::size_t>(i)]) == 0.0;
+      const bool at_support = test->space.nodes(0, boundary.nodes[std::size_t(i)]) == 0.0;
       EXPECT_EQ(boundary.rows->tangential_trace.row(i).nonZeros(), at_support ? 0 : 2);
       EXPECT_EQ(boundary.rows->gap_operator.row(i).nonZeros(), 2);
     }
@@ -120,9 +119,9 @@ TEST(ContactBoundary, KeepsTheSlipThatOneHeldComponentLeavesIn3D) {
     ASSERT_EQ(boundary.size(), 16);
     for (Index i = 0; i < boundary.size(); ++i) {
       Matrix frame(3, 3);
-      frame << boundary.rows->normals.col(i), boundary.rows->tangents[static_cast<std::size_t>(i)];
+      frame << boundary.rows->normals.col(i), boundary.rows->tangents[std::size_t(i)];
       EXPECT_LE((frame.transpose() * frame - Matrix::Identity(3, 3)).norm(), 1e-15 * 8);
-      const bool at_support = test->space.nodes(0, boundary.nodes[static_cast<std::size_t>(i)]) == 0.0;
+      const bool at_support = test->space.nodes(0, boundary.nodes[std::size_t(i)]) == 0.0;
       const bool one = at_support && held.size() == 1;
       const double along_held_axis = one ? frame(held.front(), 1) : 0.0;
       EXPECT_EQ(along_held_axis, 0.0);
@@ -154,7 +153,7 @@ TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
           Matrix rows(boundary.size() * d, test->space.dof_count());
           rows << Matrix(boundary.rows->gap_operator), Matrix(boundary.rows->tangential_trace);
           for (Index dof = 0; dof < rows.cols(); ++dof) {
-            if (!is_free(dof / d, static_cast<int>(dof % d))) rows.col(dof).setZero();
+            if (!is_free(dof / d, int(dof % d))) rows.col(dof).setZero();
           }
           std::vector<Index> used;
           for (Index row = 0; row < rows.rows(); ++row) {
@@ -201,7 +200,7 @@ TEST(ContactBoundary, JoinsGroupsThatShareAnObstacle) {
     const Vector pressure = boundary.pressure_recovery * boundary.weights;
     EXPECT_LE((pressure.array() - 1.0).abs().maxCoeff(), 1e-13);
     for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
-      const auto row = static_cast<Index>(k);
+      const auto row = Index(k);
       const int axis = boundary.node_pair[k] == 1 ? 0 : 1;
       EXPECT_EQ(Vector(boundary.node_normals.col(row)), Vector(Vector::Unit(2, axis)));
       EXPECT_EQ(boundary.node_initial_gap[row], test->space.nodes(axis, boundary.nodes[k]) + 0.5);
@@ -223,7 +222,7 @@ TEST(ContactBoundary, TakesFrictionPerFacetOrPerNode) {
   ASSERT_EQ(boundary.size(), 6);
   EXPECT_TRUE(boundary.has_friction());
   for (Index i = 0; i < boundary.size(); ++i) {
-    const bool tresca = boundary.pair[static_cast<std::size_t>(i)] == 1;
+    const bool tresca = boundary.pair[std::size_t(i)] == 1;
     EXPECT_EQ(boundary.friction_coefficient[i], tresca ? 0.0 : 0.3);
     EXPECT_EQ(boundary.friction_bound[i], tresca ? 7.0 * boundary.weights[i] : 0.0);
   }
@@ -275,8 +274,8 @@ TEST(ContactBoundary, HasTheSizesOfThePage) {
         const ContactBoundary boundary =
             make_contact_boundary(test->body, {pair_of(*test, d == 2 ? "y0" : "z0", *floor, multipliers)}, all_free);
         char entry[64];
-        std::snprintf(entry, sizeof entry, " %d × %.1f |", static_cast<int>(boundary.size()),
-                      static_cast<double>(boundary.trace.nonZeros()) / static_cast<double>(boundary.size()));
+        std::snprintf(entry, sizeof entry, " %d × %.1f |", int(boundary.size()),
+                      double(boundary.trace.nonZeros()) / double(boundary.size()));
         row += entry;
       }
       std::printf("%s\n", row.c_str());

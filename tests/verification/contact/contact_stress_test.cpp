@@ -21,7 +21,7 @@ struct Side {
 
   Side(const ElementKind& kind, const std::string& multipliers) {
     const int d = kind.dimension();
-    test = make_meshed_body(make_checked_box_mesh({kind.shape, std::vector<int>(static_cast<std::size_t>(d), 2),
+    test = make_meshed_body(make_checked_box_mesh({kind.shape, std::vector<int>(std::size_t(d), 2),
                                                    kind.geometry_degree, 0.15, swirl_map(0.03)}),
                             kind.displacement_degree);
     outward = -Vector::Unit(d, d - 1);

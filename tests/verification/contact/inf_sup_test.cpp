@@ -60,20 +60,20 @@ void join_coincident_nodes(Mesh& mesh) {
     const auto same = [&](Index other) { return (mesh.nodes.col(node) - mesh.nodes.col(other)).norm() < 1e-9; };
     const bool on_seam = std::abs(mesh.nodes(1, node)) < 1e-9 && mesh.nodes(0, node) > 0.0;
     const auto found = on_seam ? std::ranges::find_if(kept, same) : kept.end();
-    number[static_cast<std::size_t>(node)] = found - kept.begin();
+    number[std::size_t(node)] = found - kept.begin();
     if (found == kept.end()) kept.push_back(node);
   }
-  Points nodes(mesh.dimension, static_cast<Index>(kept.size()));
+  Points nodes(mesh.dimension, Index(kept.size()));
   std::vector<std::int64_t> tags;
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    nodes.col(static_cast<Index>(i)) = mesh.nodes.col(kept[i]);
-    tags.push_back(static_cast<std::int64_t>(i) + 1);
+    nodes.col(Index(i)) = mesh.nodes.col(kept[i]);
+    tags.push_back(std::int64_t(i) + 1);
   }
   mesh.nodes = nodes;
   mesh.node_tags = tags;
   for (std::vector<CellBlock>* blocks : {&mesh.cells, &mesh.facets}) {
     for (CellBlock& block : *blocks) {
-      for (Index& node : block.nodes) node = number[static_cast<std::size_t>(node)];
+      for (Index& node : block.nodes) node = number[std::size_t(node)];
     }
   }
 }
@@ -97,7 +97,7 @@ double constant(const Family& family, const std::string& multipliers, int n) {
     return inf_sup_constant(test->body, test->mesh.group("y1", 1).members, multipliers);
   }
   const bool bent = family.boundary == "bent";
-  const BoxMesh box{family.shape, std::vector<int>(static_cast<std::size_t>(d), n), bent ? 2 : 1, 0.15,
+  const BoxMesh box{family.shape, std::vector<int>(std::size_t(d), n), bent ? 2 : 1, 0.15,
                     bent ? bend_map() : PointMap{}};
   const auto test = make_meshed_body(make_box_mesh(box), family.degree);
   const Points& nodes = test->space.nodes;

@@ -37,7 +37,7 @@ std::unique_ptr<Obstacle> tilted_plane(int dimension) {
 /// A function of position without symmetries.
 double wave(const Vector& x, int component) {
   double phase = 0.7 * component;
-  for (Index k = 0; k < x.size(); ++k) phase += (1.3 + static_cast<double>(k)) * x[k];
+  for (Index k = 0; k < x.size(); ++k) phase += (1.3 + double(k)) * x[k];
   return std::sin(phase);
 }
 
@@ -98,7 +98,7 @@ TEST_P(SpaceTest, TraceOfAUniformDisplacementIsItself) {
     const Vector slip = boundary_.rows->tangential_trace * displacement;
     for (Index i = 0; i < boundary_.size(); ++i) {
       EXPECT_NEAR(gap[i], boundary_.rows->normals.col(i).dot(shift), 1e-14);
-      const Vector expected = boundary_.rows->tangents[static_cast<std::size_t>(i)].transpose() * shift;
+      const Vector expected = boundary_.rows->tangents[std::size_t(i)].transpose() * shift;
       EXPECT_LE((slip.segment(i * (d - 1), d - 1) - expected).lpNorm<Eigen::Infinity>(), 1e-14);
     }
   }
@@ -159,7 +159,7 @@ TEST_P(SpaceTest, GapsAreMeansOfTheGap) {
     const Vector gap = boundary_.initial_gap + boundary_.rows->gap_operator * displacement;
     if (!space_->has_functions()) {
       for (Index i = 0; i < gap.size(); ++i) {
-        const Index node = boundary_.nodes[static_cast<std::size_t>(i)];
+        const Index node = boundary_.nodes[std::size_t(i)];
         EXPECT_NEAR(gap[i], obstacle_->gap(test_->space.nodes.col(node) + displacement.segment(node * d, d)), 1e-14);
       }
       continue;
@@ -178,8 +178,8 @@ TEST_P(SpaceTest, GapsAreMeansOfTheGap) {
           x += (*q.displacement)(j, point) * displacement.segment(q.nodes[j] * d, d);
         }
         for (std::size_t a = 0; a < functions.anchors.size(); ++a) {
-          values[point] += arbitrary(static_cast<double>(functions.anchors[a])) *
-                           functions.values(static_cast<Index>(a), point) * obstacle_->gap(x);
+          values[point] +=
+              arbitrary(double(functions.anchors[a])) * functions.values(Index(a), point) * obstacle_->gap(x);
         }
       }
       return values;
@@ -189,9 +189,9 @@ TEST_P(SpaceTest, GapsAreMeansOfTheGap) {
       return std::pair(key(a), a.pair) < std::pair(key(b), b.pair);
     });
     for (Index i = 0; i < gap.size(); ++i) {
-      const Multiplier& multiplier = multipliers[static_cast<std::size_t>(i)];
+      const Multiplier& multiplier = multipliers[std::size_t(i)];
       const Index anchor = multiplier.node >= 0 ? multiplier.node : multiplier.facet;
-      found += arbitrary(static_cast<double>(anchor)) * boundary_.weights[i] * gap[i];
+      found += arbitrary(double(anchor)) * boundary_.weights[i] * gap[i];
     }
     const double size = integral([](const FacetQuadrature& q) { return Vector::Ones(q.measure.size()); });
     EXPECT_NEAR(found, expected, 1e-12 * size);
@@ -203,7 +203,7 @@ TEST_P(SpaceTest, UniformPressureIsRecoveredAtEveryNode) {
     SCOPED_TRACE(given.label());
     build(given);
     const Vector pressure = boundary_.pressure_recovery * boundary_.weights;
-    ASSERT_EQ(pressure.size(), static_cast<Index>(boundary_.nodes.size()));
+    ASSERT_EQ(pressure.size(), Index(boundary_.nodes.size()));
     EXPECT_EQ(boundary_.unique_nodes().size(), boundary_.nodes.size());
     std::vector<Index> expected = side("y0");
     const std::vector<Index> other = side("x1");
@@ -242,8 +242,8 @@ TEST(DualMultipliers, OfDegreeOneAreNodalForces) {
   for (const CellShape shape : all_cell_shapes) {
     for (const int geometry : {1, 2}) {
       const int d = dimension(shape);
-      const auto test = make_meshed_body(
-          make_box_mesh({shape, std::vector<int>(static_cast<std::size_t>(d), 3), geometry, 0.15, bend_map()}), 1);
+      const auto test =
+          make_meshed_body(make_box_mesh({shape, std::vector<int>(std::size_t(d), 3), geometry, 0.15, bend_map()}), 1);
       const auto obstacle = tilted_plane(d);
       const auto build = [&](const std::string& multipliers) {
         const std::vector<Index> facets = test->mesh.group("boundary", d - 1).members;

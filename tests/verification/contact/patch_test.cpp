@@ -32,7 +32,7 @@ enum class Cells { straight, curved };
 Vector curve(const Vector& x) {
   Vector result = x;
   for (Index k = 0; k < x.size(); ++k) {
-    result[k] += (0.05 - 0.01 * static_cast<double>(k)) * std::sin(M_PI * x[k]) *
+    result[k] += (0.05 - 0.01 * double(k)) * std::sin(M_PI * x[k]) *
                  std::sin(2.0 * M_PI * x[(k + 1) % x.size()] + 0.6) *
                  (x.size() == 3 ? 1.0 - 0.5 * x[(k + 2) % 3] : 1.0);
   }
@@ -78,9 +78,7 @@ class PressedBlock {
     const Index points = problem_.contact.size();
     const Index held = problem_.supports.size();
     std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](Index row, Index column, double value) {
-      entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
-    };
+    const auto add = [&](Index row, Index column, double value) { entries.emplace_back(int(row), int(column), value); };
     const SparseMatrix& stiffness = problem_.internal_force->tangent();
     for (Index column = 0; column < dofs; ++column) {
       for (SparseMatrix::InnerIterator entry(stiffness, column); entry; ++entry)
@@ -96,7 +94,7 @@ class PressedBlock {
     problem_.supports.values(0.0, supported);
     right << problem_.loads.constant(), -problem_.contact.initial_gap, supported;
     for (Index k = 0; k < held; ++k) {
-      const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(k)];
+      const Index dof = problem_.supports.dofs()[std::size_t(k)];
       add(dofs + points + k, dof, 1.0);
       add(dof, dofs + points + k, -1.0);
     }
@@ -114,7 +112,7 @@ class PressedBlock {
     const Vector found = problem_.contact.pressure_recovery * reaction_;
     double largest = 0.0;
     for (Index i = 0; i < found.size(); ++i) {
-      const Index first = problem_.contact.nodes[static_cast<std::size_t>(i)] * d_;
+      const Index first = problem_.contact.nodes[std::size_t(i)] * d_;
       bool held = true;
       for (int k = 0; k < d_; ++k) held = held && problem_.supports.contains(first + k);
       if (!held) largest = std::max(largest, std::abs(found[i] / pressure - 1.0));

@@ -26,7 +26,7 @@ class Face {
     const std::vector<ContactPair> pairs{{side, facets_, "plane", obstacle_.get(), {}, multipliers}};
     boundary_ = make_contact_boundary(body_->body, pairs, is_free);
     reaction_.setZero(boundary_.size());
-    gap_.setZero(static_cast<Index>(boundary_.nodes.size()));
+    gap_.setZero(Index(boundary_.nodes.size()));
     pressure_.setZero(gap_.size());
     displacement_.setZero(body_->space.dof_count());
   }
@@ -36,8 +36,8 @@ class Face {
   void set(const Pressure& pressure, const Gap& gap) {
     for (std::size_t entry = 0; entry < boundary_.nodes.size(); ++entry) {
       const Vector x = body_->space.nodes.col(boundary_.nodes[entry]);
-      pressure_[static_cast<Index>(entry)] = pressure(x);
-      gap_[static_cast<Index>(entry)] = gap(x);
+      pressure_[Index(entry)] = pressure(x);
+      gap_[Index(entry)] = gap(x);
       if (boundary_.own_point[entry] >= 0) reaction_[boundary_.own_point[entry]] = pressure(x);
     }
   }
@@ -84,7 +84,7 @@ TEST(PressedArea, OfAWholeFace) {
     for (const std::string multipliers : {"nodal", "p0", "p1", "dual"}) {
       for (const bool holds : {false, true}) {
         const int d = kind.dimension();
-        BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(d), 3));
+        BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(d), 3));
         box.geometry_degree = kind.geometry_degree;
         if (kind.geometry_degree == 2) box.map = swirl_map(0.05);
         const FreeComponent is_free = [&](Index node, int component) {

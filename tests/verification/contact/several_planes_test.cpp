@@ -61,7 +61,7 @@ void expect_bounces(CaseRun& run, std::size_t walls, bool frictionless = true) {
         worst = std::max(worst, std::abs(after.energy - before.energy - work) / size);
         deepest = std::max(deepest, -after.gap.minCoeff());
         for (Index i = 0; i < after.normal.size(); ++i)
-          impulse[static_cast<std::size_t>(run.problem().contact.pair[static_cast<std::size_t>(i)])] += after.normal[i];
+          impulse[std::size_t(run.problem().contact.pair[std::size_t(i)])] += after.normal[i];
         before = after;
       },
       false);

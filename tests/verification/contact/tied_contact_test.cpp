@@ -118,7 +118,7 @@ void expect_uniform_pressure(const ContactBoundary& contact, double area) {
   Vector pressure;
   contact.recover_pressure(contact.weights, pressure);
   for (Index i = 0; i < pressure.size(); ++i)
-    EXPECT_NEAR(pressure[i], 1.0, 1e-10) << "node " << contact.nodes[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(pressure[i], 1.0, 1e-10) << "node " << contact.nodes[std::size_t(i)];
 }
 
 TEST(TiedHalves, HaveAUniformPressureAcrossTheSeam) {

@@ -117,8 +117,7 @@ TEST_P(BranchesOfKind, CellStressHasThem) {
   of_cells.evaluate(u, alone, energy_alone);
   const Vector volumes = cell_volumes(body_->body);
   double more = 0.0;
-  for (std::size_t i = 0; i < energy.size(); ++i)
-    more += volumes[static_cast<Index>(i)] * (energy[i] - energy_alone[i]);
+  for (std::size_t i = 0; i < energy.size(); ++i) more += volumes[Index(i)] * (energy[i] - energy_alone[i]);
   EXPECT_NEAR(more, force_->branch_energy(u, internal_), 1e-12 * more);
   EXPECT_NE(stress, alone);
 }

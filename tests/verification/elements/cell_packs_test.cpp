@@ -15,7 +15,7 @@ namespace {
 struct LargeBody {
   explicit LargeBody(const ElementKind& kind) {
     const int per_axis = (kind.dimension() == 2 ? 80 : 17) / kind.displacement_degree;
-    BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), per_axis));
+    BoxMesh box = box_of(kind.shape, std::vector<int>(std::size_t(kind.dimension()), per_axis));
     box.geometry_degree = kind.geometry_degree;
     body = make_meshed_body(make_box_mesh(box), kind.displacement_degree);
     Material& first = body->body.materials[0];
@@ -28,7 +28,7 @@ struct LargeBody {
       body->body.cell_material[cell] = cell % 7 < 3 ? 1 : 0;
     displacement = interpolate(body->space, [&](const Vector& x) {
       Vector u(x.size());
-      for (Index a = 0; a < x.size(); ++a) u[a] = 0.05 * std::sin(5.0 * x[0] + 3.0 * x[1] + static_cast<double>(a));
+      for (Index a = 0; a < x.size(); ++a) u[a] = 0.05 * std::sin(5.0 * x[0] + 3.0 * x[1] + double(a));
       return u;
     });
     increment = interpolate(body->space, [&](const Vector& x) {
@@ -56,7 +56,7 @@ NodeGraph whole(const NodeGraph& graph, Index cells) {
   NodeGraph result = graph;
   result.part_begins = {0, graph.node_count()};
   result.cell_begins = {0, cells};
-  result.cells.resize(static_cast<std::size_t>(cells));
+  result.cells.resize(std::size_t(cells));
   std::iota(result.cells.begin(), result.cells.end(), 0);
   return result;
 }
@@ -98,7 +98,7 @@ TEST_P(CellPacksOfKind, ForcesOfSomeCellsAndOfTheOthersAreThoseOfAll) {
   const Forces all(test, graph);
   std::vector<std::vector<int>> cells(2);
   for (Index cell = 0; cell < test.body->mesh.cell_count(); ++cell)
-    cells[cell % 5 == 0 || cell % 100 < 30 ? 1 : 0].push_back(static_cast<int>(cell));
+    cells[cell % 5 == 0 || cell % 100 < 30 ? 1 : 0].push_back(int(cell));
   Vector sum = Vector::Zero(all.force.size()), rates = sum;
   double energy = 0.0;
   for (const std::vector<int>& some : cells) {

@@ -13,7 +13,7 @@
 namespace ricochet::test_support::inertia_test {
 
 std::vector<int> counts_of(int dimension, int count) {
-  return std::vector<int>(static_cast<std::size_t>(dimension), count);
+  return std::vector<int>(std::size_t(dimension), count);
 }
 
 /// Moments of the image of [0, 1]ᵈ under x ↦ A x + b, from those of the unit box: 1, ½, ⅓ or ¼.
@@ -39,8 +39,7 @@ Matrix exact_ball_moments(const Vector& centre) {
   moments(0, 0) = volume;
   moments.topRightCorner(1, d) = volume * centre.transpose();
   moments.bottomLeftCorner(d, 1) = volume * centre;
-  moments.bottomRightCorner(d, d) =
-      volume * (centre * centre.transpose() + Matrix::Identity(d, d) / static_cast<double>(d + 2));
+  moments.bottomRightCorner(d, d) = volume * (centre * centre.transpose() + Matrix::Identity(d, d) / double(d + 2));
   return test_material().density * moments;
 }
 

@@ -32,7 +32,7 @@ Resultant exact_resultant(const Vector& low, const Vector& high, const Matrix& s
   const double points[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
   const double weights[] = {5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0};
   Resultant result{Vector::Zero(d), Matrix::Zero(d, d)};
-  for (int k = 0; k < static_cast<int>(std::pow(3, d)); ++k) {
+  for (int k = 0; k < int(std::pow(3, d)); ++k) {
     Vector x(d);
     double weight = 1.0;
     for (Index axis = 0, rest = k; axis < d; ++axis, rest /= 3) {
@@ -134,7 +134,7 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
   const double area = d == 2 ? 2.0 * M_PI : 4.0 * M_PI;
   Convergence errors(kind.label());
   for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8, 16}) {
-    const auto test = make_meshed_body(make_box_mesh({kind.shape, std::vector<int>(static_cast<std::size_t>(d), count),
+    const auto test = make_meshed_body(make_box_mesh({kind.shape, std::vector<int>(std::size_t(d), count),
                                                       kind.geometry_degree, 0.15, ball_map(Vector::Zero(d))}),
                                        kind.displacement_degree);
     Vector constant = Vector::Zero(test->space.dof_count());

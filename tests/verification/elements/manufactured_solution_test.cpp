@@ -122,7 +122,7 @@ double error_norm(const MeshedBody& test, const Wave& wave, const Vector& displa
     for (int k = 0; k < geometry.nodes_per_cell; ++k) nodes.col(k) = test.mesh.nodes.col(geometry.cell(cell)[k]);
     for (int k = 0; k < cells.nodes_per_cell; ++k) values.col(k) = displacement.segment(cells.cell(cell)[k] * d, d);
     for (Index q = 0; q < rule.weights.size(); ++q) {
-      const Matrix jacobian = nodes * map.gradients[static_cast<std::size_t>(q)];
+      const Matrix jacobian = nodes * map.gradients[std::size_t(q)];
       const Vector difference = values * shape.values.col(q) - wave.displacement(nodes * map.values.col(q), turn);
       sum += rule.weights[q] * jacobian.determinant() * difference.squaredNorm();
     }
@@ -171,13 +171,12 @@ TEST_P(ManufacturedSolution, ConvergesWithOneOrderMoreThanTheDegree) {
     const auto test = make_body(kind, count);
     const SemidiscreteProblem problem = make_problem(*test, wave, false);
     // Δt ~ h for degree 1 and h^(3/2) for degree 2: the error in time decreases as in space, far below it.
-    const int steps = k == 1 ? count : static_cast<int>(std::ceil(1.5 * std::pow(count, 1.5)));
+    const int steps = k == 1 ? count : int(std::ceil(1.5 * std::pow(count, 1.5)));
     errors.push_back(run_error(*test, problem, wave, steps));
     std::printf("  %2d: %.2e", count, errors.back());
     const std::size_t n = errors.size();
     if (n > 1) {
-      order = std::log(errors[n - 2] / errors[n - 1]) /
-              std::log(static_cast<double>(counts[n - 1]) / static_cast<double>(counts[n - 2]));
+      order = std::log(errors[n - 2] / errors[n - 1]) / std::log(double(counts[n - 1]) / double(counts[n - 2]));
       std::printf(" (%.2f)", order);
     }
   }

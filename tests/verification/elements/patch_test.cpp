@@ -78,12 +78,12 @@ std::vector<int> number_dofs(const MeshedBody& test, bool on_boundary, int& coun
   const int d = test.mesh.dimension;
   std::vector<char> held(static_cast<std::size_t>(test.space.node_count()), 0);
   for (const Index node : facet_nodes(test.space, test.mesh.group("boundary", d - 1).members)) {
-    held[static_cast<std::size_t>(node)] = 1;
+    held[std::size_t(node)] = 1;
   }
   std::vector<int> number(static_cast<std::size_t>(test.space.dof_count()), -1);
   count = 0;
   for (std::size_t dof = 0; dof < number.size(); ++dof) {
-    if ((held[dof / static_cast<std::size_t>(d)] != 0) == on_boundary) number[dof] = count++;
+    if ((held[dof / std::size_t(d)] != 0) == on_boundary) number[dof] = count++;
   }
   return number;
 }
@@ -99,8 +99,8 @@ TEST_P(PatchTest, AffineDisplacementOnTheBoundaryGivesItInside) {
   ASSERT_GE(inner_count, d);
   Vector inner_exact(inner_count), held_exact(held_count);
   for (std::size_t dof = 0; dof < inner.size(); ++dof) {
-    if (inner[dof] >= 0) inner_exact[inner[dof]] = exact[static_cast<Index>(dof)];
-    if (held[dof] >= 0) held_exact[held[dof]] = exact[static_cast<Index>(dof)];
+    if (inner[dof] >= 0) inner_exact[inner[dof]] = exact[Index(dof)];
+    if (held[dof] >= 0) held_exact[held[dof]] = exact[Index(dof)];
   }
   const SparseMatrix k_ii = extract(stiffness, inner, inner_count, inner, inner_count);
   const SparseMatrix k_ih = extract(stiffness, inner, inner_count, held, held_count);
@@ -121,10 +121,10 @@ TEST_P(PatchTest, UniformStressHasNoForceInside) {
   const std::vector<int> inner = number_dofs(*test, false, count);
   double largest = 0.0;
   for (std::size_t dof = 0; dof < inner.size(); ++dof) {
-    if (inner[dof] >= 0) largest = std::max(largest, std::abs(force[static_cast<Index>(dof)]));
+    if (inner[dof] >= 0) largest = std::max(largest, std::abs(force[Index(dof)]));
   }
   EXPECT_GT(size, 1e-3);
-  EXPECT_LE(largest, 2e-14 * size * std::sqrt(static_cast<double>(stiffness.nonZeros() / stiffness.cols())));
+  EXPECT_LE(largest, 2e-14 * size * std::sqrt(double(stiffness.nonZeros() / stiffness.cols())));
 }
 
 /// The energy of the affine displacement is ½ σ:ε times the volume: checks the law and the integration of curved cells.

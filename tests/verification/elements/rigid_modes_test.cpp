@@ -132,7 +132,7 @@ TEST(RigidModesOfLinearDisplacementOnCurvedCells, HaveAnEnergyOfSecondOrder) {
     std::printf("%-16s rotation energy / shear modulus, unit angle:", name(shape).c_str());
     for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8}) {
       const auto test = make_meshed_body(
-          make_checked_box_mesh({shape, std::vector<int>(static_cast<std::size_t>(d), count), 2, 0.0, bend_map()}), 1);
+          make_checked_box_mesh({shape, std::vector<int>(std::size_t(d), count), 2, 0.0, bend_map()}), 1);
       Matrix spin = Matrix::Zero(d, d);
       spin(0, 1) = -1.0;
       spin(1, 0) = 1.0;

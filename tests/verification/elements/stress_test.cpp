@@ -20,7 +20,7 @@ struct StressCase {
 std::unique_ptr<MeshedBody> curved_body(const StressCase& test, int count = 3) {
   BoxMesh box;
   box.shape = test.kind.shape;
-  box.counts.assign(static_cast<std::size_t>(test.kind.dimension()), count);
+  box.counts.assign(std::size_t(test.kind.dimension()), count);
   box.geometry_degree = test.kind.geometry_degree;
   if (test.kind.contains_affine()) box.map = swirl_map(0.05);
   return make_meshed_body(make_box_mesh(box), test.kind.displacement_degree, test.plane);
@@ -57,7 +57,7 @@ TEST_P(StressTest, OfAnAffineDisplacement) {
 
   std::vector<double> found, density;
   CellStress(body->body).evaluate(displacement, found, density);
-  ASSERT_EQ(static_cast<Index>(density.size()), body->mesh.cell_count());
+  ASSERT_EQ(Index(density.size()), body->mesh.cell_count());
   const Eigen::Matrix3d deviator = stress - stress.trace() / 3.0 * Eigen::Matrix3d::Identity();
   for (std::size_t cell = 0; cell < density.size(); ++cell) {
     const double* s = found.data() + 6 * cell;
@@ -110,7 +110,7 @@ TEST_P(StressTest, RecoveryIsExactForLinearFunctions) {
   const Vector found = recovery.weights * samples;
   ASSERT_EQ(found.size(), body->space.node_count());
   for (Index row = 0; row < found.size(); ++row) {
-    const Index node = recovery.row_node[static_cast<std::size_t>(row)];
+    const Index node = recovery.row_node[std::size_t(row)];
     EXPECT_NEAR(found[row], 0.4 + slope.dot(body->space.nodes.col(node)), 1e-11);
   }
 }
@@ -121,8 +121,7 @@ double worst_hidden_cell(const MeshedBody& body, const std::vector<double>& cell
   each_cell(body.space.cells, [&](Index cell, std::span<const Index> of_cell) {
     double largest = 0.0;
     for (const Index node : of_cell)
-      largest =
-          std::max(largest, von_mises_stress(nodes.data() + 6 * body.space.number[static_cast<std::size_t>(node)]));
+      largest = std::max(largest, von_mises_stress(nodes.data() + 6 * body.space.number[std::size_t(node)]));
     const double own = von_mises_stress(cells.data() + 6 * cell);
     worst = std::max(worst, (own - largest) / own);
   });
@@ -135,7 +134,7 @@ TEST_P(StressTest, NodesHideNoCell) {
   const auto body = curved_body(GetParam());
   std::srand(7);
   const Vector displacement = Vector::Random(body->space.dof_count());
-  std::vector<double> cells, density, nodes, fitted(static_cast<std::size_t>(6 * body->space.node_count()));
+  std::vector<double> cells, density, nodes, fitted(std::size_t(6 * body->space.node_count()));
   CellStress(body->body).evaluate(displacement, cells, density);
   NodalStress nodal(body->body);
   nodal.evaluate(cells, nodes);
@@ -143,7 +142,7 @@ TEST_P(StressTest, NodesHideNoCell) {
   const NodalRecovery recovery = make_nodal_recovery(body->body);
   const Matrix fit = recovery.weights * Eigen::Map<const Matrix>(cells.data(), 6, body->mesh.cell_count()).transpose();
   for (Index node = 0; node < fit.rows(); ++node) {
-    const Index row = body->space.number[static_cast<std::size_t>(node)];
+    const Index row = body->space.number[std::size_t(node)];
     Eigen::Map<Vector>(fitted.data() + 6 * row, 6) = fit.row(node).transpose();
   }
   EXPECT_GT(worst_hidden_cell(*body, cells, fitted), 0.05);
@@ -196,9 +195,9 @@ TEST(NodalRecovery, IsOfHigherOrder) {
     const CellBlock& cells = body->space.cells.front();
     for (Index cell = 0; cell < cells.size(); ++cell)
       own_error += std::pow(components(0, cell) - exact(body->space.nodes.col(cells.cell(cell)[0])), 2);
-    inside.push_back(std::sqrt(inside_error / static_cast<double>(recovered.size())));
-    nodal.push_back(std::sqrt(nodal_error / static_cast<double>(recovered.size())));
-    own.push_back(std::sqrt(own_error / static_cast<double>(cells.size())));
+    inside.push_back(std::sqrt(inside_error / double(recovered.size())));
+    nodal.push_back(std::sqrt(nodal_error / double(recovered.size())));
+    own.push_back(std::sqrt(own_error / double(cells.size())));
   }
   for (std::size_t i = 1; i < nodal.size(); ++i) {
     EXPECT_GT(std::log2(inside[i - 1] / inside[i]), 1.75);
@@ -221,23 +220,23 @@ TEST(NodalRecovery, KeepsMaterialsApart) {
     double x = 0.0;
     for (int k = 0; k < 3; ++k) x += body->space.nodes(0, cells.cell(cell)[k]) / 3.0;
     const int material = x < 0.5 ? 0 : 1;
-    body->body.cell_material[static_cast<std::size_t>(cell)] = material;
+    body->body.cell_material[std::size_t(cell)] = material;
     samples[cell] = material == 0 ? 1.0 : 5.0;
   }
   const NodalRecovery recovery = make_nodal_recovery(body->body);
   const Vector found = recovery.weights * samples;
   EXPECT_EQ(found.size(), body->space.node_count() + 5);
-  std::vector<double> nodes, tension(static_cast<std::size_t>(6 * cells.size()));
-  for (Index cell = 0; cell < cells.size(); ++cell) tension[static_cast<std::size_t>(6 * cell)] = samples[cell];
+  std::vector<double> nodes, tension(std::size_t(6 * cells.size()));
+  for (Index cell = 0; cell < cells.size(); ++cell) tension[std::size_t(6 * cell)] = samples[cell];
   NodalStress(body->body).evaluate(tension, nodes);
   Index last = -1;
   for (Index row = 0; row < found.size(); ++row) {
-    const Index node = recovery.row_node[static_cast<std::size_t>(row)];
+    const Index node = recovery.row_node[std::size_t(row)];
     const double x = body->space.nodes(0, node);
     const bool is_between = std::abs(x - 0.5) < 0.01;
     EXPECT_NEAR(found[row], is_between ? (node == last ? 5.0 : 1.0) : x < 0.5 ? 1.0 : 5.0, 1e-12) << x;
     last = node;
-    const auto number = static_cast<std::size_t>(body->space.number[static_cast<std::size_t>(node)]);
+    const auto number = std::size_t(body->space.number[std::size_t(node)]);
     EXPECT_NEAR(nodes[6 * number], x < 0.49 ? 1.0 : 5.0, 1e-12) << x;
   }
 }

@@ -27,7 +27,7 @@ struct Variant : AssembledBody {
   std::vector<Index> number;  ///< new number of each node
 
   explicit Variant(const AssembledBody& from)
-      : AssembledBody(from.mesh, from.space, from.body), number(static_cast<std::size_t>(space.nodes.cols())) {
+      : AssembledBody(from.mesh, from.space, from.body), number(std::size_t(space.nodes.cols())) {
     std::iota(number.begin(), number.end(), Index{0});
   }
 
@@ -38,24 +38,23 @@ struct Variant : AssembledBody {
   void shuffle(std::mt19937& random) {
     std::shuffle(number.begin(), number.end(), random);
     const Points before = space.nodes;
-    for (std::size_t i = 0; i < number.size(); ++i) space.nodes.col(number[i]) = before.col(static_cast<Index>(i));
+    for (std::size_t i = 0; i < number.size(); ++i) space.nodes.col(number[i]) = before.col(Index(i));
     for (std::size_t b = 0; b < space.cells.size(); ++b) {
-      for (Index& node : space.cells[b].nodes) node = number[static_cast<std::size_t>(node)];
+      for (Index& node : space.cells[b].nodes) node = number[std::size_t(node)];
       std::vector<Index> order(static_cast<std::size_t>(space.cells[b].size()));
       std::iota(order.begin(), order.end(), Index{0});
       std::shuffle(order.begin(), order.end(), random);
       for (CellBlock* block : {&space.cells[b], &mesh.cells[b]}) {
         const CellBlock old = *block;
         for (std::size_t k = 0; k < order.size(); ++k) {
-          std::copy_n(old.cell(order[k]), old.nodes_per_cell,
-                      block->nodes.begin() + static_cast<Index>(k) * old.nodes_per_cell);
+          std::copy_n(old.cell(order[k]), old.nodes_per_cell, block->nodes.begin() + Index(k) * old.nodes_per_cell);
         }
       }
     }
   }
   SparseMatrix build(const AssembledBody& from, const char* type) {
     std::vector<Index> contact_nodes;
-    for (const Index node : from.input.contact_nodes) contact_nodes.push_back(number[static_cast<std::size_t>(node)]);
+    for (const Index node : from.input.contact_nodes) contact_nodes.push_back(number[std::size_t(node)]);
     std::ranges::sort(contact_nodes);
     assemble(std::move(contact_nodes));
     return build_mass(type, input);
@@ -78,8 +77,7 @@ TEST(CellwiseEquivalentMass, NumbersOfNodesAndCellsDoNotMatter) {
     double worst = 0.0;
     for (Index j = 0; j < plain.cols(); ++j) {
       for (SparseMatrix::InnerIterator entry(plain, j); entry; ++entry) {
-        const double there =
-            found.coeff(other.number[static_cast<std::size_t>(entry.row())], other.number[static_cast<std::size_t>(j)]);
+        const double there = found.coeff(other.number[std::size_t(entry.row())], other.number[std::size_t(j)]);
         worst = std::max(worst, std::abs(there - entry.value()));
       }
     }
@@ -98,14 +96,14 @@ TEST(CellwiseEquivalentMass, UnitsThatArePowersOfTwoChangeNoBit) {
     other.body.materials[0].density *= std::ldexp(1.0, 40);
     const SparseMatrix found = other.build(body, cellwise);
     ASSERT_EQ(found.nonZeros(), plain.nonZeros());
-    const double factor = std::ldexp(1.0, static_cast<int>(40 - 30 * d));
+    const double factor = std::ldexp(1.0, int(40 - 30 * d));
     EXPECT_EQ((found - factor * plain).norm(), 0.0) << name;
   }
 }
 
 Matrix affine_map(Index dimension, double ratio, std::mt19937& random) {
   const auto rotation = [&] {
-    const auto any = [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; };
+    const auto any = [&] { return double(random()) / 2147483648.0 - 1.0; };
     return Matrix(Eigen::HouseholderQR<Matrix>(Matrix::NullaryExpr(dimension, dimension, any)).householderQ());
   };
   Vector stretch = Vector::Ones(dimension);
@@ -172,7 +170,7 @@ struct Slit {
       for (int k = 0; k < 3; ++k) {
         const bool on_slit = std::abs(grid.nodes(0, nodes[k]) - 0.5) < 1e-9 && grid.nodes(1, nodes[k]) < 0.74;
         const auto [place, is_new] =
-            number.emplace(std::pair(nodes[k], is_cut && on_slit && middle > 0.5), static_cast<Index>(number.size()));
+            number.emplace(std::pair(nodes[k], is_cut && on_slit && middle > 0.5), Index(number.size()));
         if (is_new) at.push_back(nodes[k]);
         if (middle < 0.5) left[nodes[k]] = place->second;
         mesh.cells[0].nodes.push_back(place->second);
@@ -198,7 +196,7 @@ struct Slit {
   [[nodiscard]] Index space_node(Index mesh_node) const {
     const std::vector<Index>& of_mesh = body->mesh.cells[0].nodes;
     const auto place = std::ranges::find(of_mesh, mesh_node) - of_mesh.begin();
-    return body->space.cells[0].nodes[static_cast<std::size_t>(place)];
+    return body->space.cells[0].nodes[std::size_t(place)];
   }
 };
 
@@ -241,8 +239,7 @@ TEST(CellwiseEquivalentMass, OfDamping) {
       // Semi-definite: no motion gains energy.
       std::mt19937 random(3);
       for (int k = 0; k < 20; ++k) {
-        const Vector v =
-            Vector::NullaryExpr(found.cols(), [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
+        const Vector v = Vector::NullaryExpr(found.cols(), [&] { return double(random()) / 2147483648.0 - 1.0; });
         EXPECT_GE(v.dot(found * v), -1e-14 * v.squaredNorm() * found.norm()) << name;
       }
     }

@@ -28,7 +28,7 @@ constexpr const char* block =
 /// Nodes without contact: a few anywhere, or all on one line or in one plane of the grid, or all in a part of the body.
 std::vector<char> random_free_nodes(const Points& nodes, std::mt19937& random) {
   std::vector<char> free(static_cast<std::size_t>(nodes.cols()), 0);
-  const auto any = [&](Index count) { return static_cast<Index>(random() % static_cast<unsigned>(count)); };
+  const auto any = [&](Index count) { return Index(random() % unsigned(count)); };
   const Vector through = nodes.col(any(nodes.cols()));
   const Index fixed = 1 + any(nodes.rows());  // number of fixed coordinates: a plane, a line or a point remains
   const Index kind = any(3);
@@ -42,7 +42,7 @@ std::vector<char> random_free_nodes(const Points& nodes, std::mt19937& random) {
         is_free = is_free && std::abs(nodes(axis, i) - through[axis]) < 1e-9;
       }
     }
-    free[static_cast<std::size_t>(i)] = is_free ? 1 : 0;
+    free[std::size_t(i)] = is_free ? 1 : 0;
   }
   return free;
 }
@@ -91,7 +91,7 @@ void check_promises(const std::string& type, const AssembledBody& body, const Ma
   const Vector centre = wanted.col(0).tail(d) / wanted(0, 0);
   for (int k = 0; k < 10; ++k) {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-    if (d == 3) axis = Eigen::Vector3d::NullaryExpr([&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
+    if (d == 3) axis = Eigen::Vector3d::NullaryExpr([&] { return double(random()) / 2147483648.0 - 1.0; });
     const double ratio =
         energy_of_spin(mass, nodes, centre, axis) / energy_of_spin(body.consistent, nodes, centre, axis);
     EXPECT_GE(ratio, 0.1 - 1e-9) << "spin has inertia about every axis";
@@ -115,12 +115,12 @@ TEST(DegenerateBodies, AMassKeepsItsPromisesOrIsRefused) {
         MassInput input = body.input;
         input.contact_nodes.clear();
         for (Index i = 0; i < body.space.nodes.cols(); ++i) {
-          if (free[static_cast<std::size_t>(i)] == 0) input.contact_nodes.push_back(i);
+          if (free[std::size_t(i)] == 0) input.contact_nodes.push_back(i);
         }
         check_promises(type, body, input, random, count);
       }
-      std::printf("%d dimensions, %-20s %3d exact, %3d with a warning, %3d refused\n",
-                  static_cast<int>(body.space.nodes.rows()), type, count.exact, count.warned, count.refused);
+      std::printf("%d dimensions, %-20s %3d exact, %3d with a warning, %3d refused\n", int(body.space.nodes.rows()),
+                  type, count.exact, count.warned, count.refused);
       EXPECT_GT(count.refused, 20);
       EXPECT_GT(count.exact + count.warned, 2);
     }

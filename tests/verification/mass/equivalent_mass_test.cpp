@@ -51,7 +51,7 @@ void expect_pattern(const SparseMatrix& mass, const SparseMatrix& consistent, co
     const int* const inner = consistent.innerIndexPtr();
     for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry) {
       ASSERT_TRUE(std::binary_search(inner + consistent.outerIndexPtr()[column],
-                                     inner + consistent.outerIndexPtr()[column + 1], static_cast<int>(entry.row())))
+                                     inner + consistent.outerIndexPtr()[column + 1], int(entry.row())))
           << name << ": (" << entry.row() << ", " << column << ")";
     }
   }
@@ -77,7 +77,7 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
         if (type == "equivalent-cellwise" || type == "equivalent-nearest")
           expect_pattern(mass, body.consistent, description.name);
         std::printf("      %7.2f [%5.2f]", top_eigenvalue(mass, scale),
-                    static_cast<double>(mass.nonZeros()) / static_cast<double>(body.consistent.nonZeros()));
+                    double(mass.nonZeros()) / double(body.consistent.nonZeros()));
       } catch (const Error& problem) {
         ++refused[type];
         std::printf(" %20s", "refused");
@@ -126,7 +126,7 @@ TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
     Assembled body(body_of_kind(name));
     const DisplacementSpace linear = make_displacement_space(body.mesh, 1);
     Body same{&body.mesh, &linear, PlaneState::strain, {{"body", 3.0, make_linear_elasticity(1.0, 1.0)}}, {}};
-    same.cell_material.assign(static_cast<std::size_t>(body.mesh.cell_count()), 0);
+    same.cell_material.assign(std::size_t(body.mesh.cell_count()), 0);
     body.consistent = assemble_scalar_mass(same, node_graph(linear));
     body.space = linear;
     body.input = {&body.consistent, &body.space.nodes,

@@ -58,7 +58,7 @@ double defect(const SparseMatrix& mass, const MappedBody& mapped, const Matrix& 
     return Long(monomials.transpose() * product);
   };
   const Long wanted = moments(mapped.consistent);
-  return static_cast<double>((moments(mass) - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff());
+  return double((moments(mass) - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff());
 }
 
 TEST(FlatCells, TheEquivalentMassOfAMappedMeshIsThatOfTheMesh) {

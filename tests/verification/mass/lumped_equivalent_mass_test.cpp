@@ -100,7 +100,7 @@ TEST(LumpedEquivalentMass, MovesLessMassOnFinerMeshes) {
     for (Index i = 0; i < lumped.size(); ++i) {
       bool beside = false;
       for (SparseMatrix::InnerIterator entry(body.consistent, i); entry; ++entry) {
-        beside = beside || std::ranges::binary_search(body.input.contact_nodes, static_cast<Index>(entry.row()));
+        beside = beside || std::ranges::binary_search(body.input.contact_nodes, Index(entry.row()));
       }
       if (!beside) correction = std::max(correction, std::abs(mass.coeff(i, i) / lumped[i] - 1.0));
     }

@@ -59,10 +59,10 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
         const Vector normal = pairs[k].obstacle->has_constant_normals()
                                   ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
                                   : Vector(Vector::Constant(d, 1.0 / std::sqrt(d)));
-        entry->second = {static_cast<int>(k), !has_free_part(node, normal, is_free)};
+        entry->second = {int(k), !has_free_part(node, normal, is_free)};
         supported_count_ += entry->second.supported ? 1 : 0;
       }
-      check_agreement(pairs[static_cast<std::size_t>(entry->second.first_pair)], pairs[k], entry->second.supported);
+      check_agreement(pairs[std::size_t(entry->second.first_pair)], pairs[k], entry->second.supported);
     }
   }
   check_coincidence(body, pairs);
@@ -83,8 +83,8 @@ void BoundaryNodes::check_coincidence(const Body& body, const std::vector<Contac
   for (auto one = nodes_.begin(); one != nodes_.end(); ++one) {
     for (auto other = std::next(one); other != nodes_.end() && other->first.first == one->first.first; ++other) {
       if (one->second.supported || other->second.supported) continue;
-      const ContactPair& first = pairs[static_cast<std::size_t>(one->second.first_pair)];
-      const ContactPair& second = pairs[static_cast<std::size_t>(other->second.first_pair)];
+      const ContactPair& first = pairs[std::size_t(one->second.first_pair)];
+      const ContactPair& second = pairs[std::size_t(other->second.first_pair)];
       const Vector at = body.space->nodes.col(one->first.first);
       if (carry_alike(first, second) || !coincide(*first.obstacle, *second.obstacle, at)) continue;
       std::string coordinates;

@@ -31,7 +31,7 @@ Patches collect_patches(const Body& body, const std::vector<ContactPair>& pairs)
       (*patch)->multipliers = pairs[k].multipliers;
       (*patch)->facets.body = &body;
     }
-    (*patch)->facets.parts.push_back({static_cast<int>(k), pairs[k].facets});
+    (*patch)->facets.parts.push_back({int(k), pairs[k].facets});
   }
   return patches;
 }
@@ -71,7 +71,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
   std::map<Index, int> number;
   for (std::size_t i = 0; i < patch.retained.size(); ++i) {
     if (tied.is_tied(patch.retained[i].node)) continue;
-    number[patch.retained[i].node] = static_cast<int>(retained.size());
+    number[patch.retained[i].node] = int(retained.size());
     retained.push_back(patch.retained[i]);
     conditions.push_back(patch.conditions[i]);
   }
@@ -90,7 +90,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
     if (areas[i].empty()) lost.push_back(multiplier.node);
     for (auto& [to, area] : areas[i]) {
       area = total > 0.0 ? area / total : 0.0;
-      retained[static_cast<std::size_t>(to)].weight += area;
+      retained[std::size_t(to)].weight += area;
     }
   }
   if (!lost.empty()) {
@@ -104,10 +104,10 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
   const auto redistribute = [&](std::vector<Eigen::Triplet<double>>& recovery) {
     std::vector<Eigen::Triplet<double>> result;
     for (const auto& entry : recovery) {
-      for (const auto& [to, area] : areas[static_cast<std::size_t>(entry.col())]) {
-        const double whole = retained[static_cast<std::size_t>(to)].weight;
+      for (const auto& [to, area] : areas[std::size_t(entry.col())]) {
+        const double whole = retained[std::size_t(to)].weight;
         const double part = whole != 0.0 ? area / whole : 1.0;
-        result.emplace_back(entry.row(), static_cast<int>(to), part * entry.value());
+        result.emplace_back(entry.row(), int(to), part * entry.value());
       }
     }
     recovery = std::move(result);
@@ -145,7 +145,7 @@ void number_points(const Patches& patches) {
   std::ranges::sort(order);
   for (std::size_t number = 0; number < order.size(); ++number) {
     const auto& [node, pair, p, i] = order[number];
-    patches[p]->numbers[i] = static_cast<int>(number);
+    patches[p]->numbers[i] = int(number);
   }
 }
 
@@ -157,7 +157,7 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
   facings.assign(pairs.size(), {});
   const TiedNodes none;
   for (const auto& patch : patches) {
-    const auto first = static_cast<std::size_t>(patch->first_pair());
+    const auto first = std::size_t(patch->first_pair());
     if (patch->obstacle != nullptr) {
       make_obstacle_patch(body, nodes, *patch);
     } else if (pairs[first].large_sliding) {

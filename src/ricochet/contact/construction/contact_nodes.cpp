@@ -19,20 +19,20 @@ class NodeTable {
   void add(const BoundaryPatch& patch) {
     if (patch.obstacle == nullptr) {
       for (const BodyContact::Node& node : patch.nodes)
-        rows_[{node.node, patch.first_pair(), static_cast<char>(node.own ? 0 : 1)}] = {0, &node};
+        rows_[{node.node, patch.first_pair(), char(node.own ? 0 : 1)}] = {0, &node};
       return;
     }
     for (const Index node : patch.reached) rows_[key(patch, node)] = {};
   }
 
   void fill(ContactBoundary& boundary) {
-    const auto count = static_cast<Index>(rows_.size());
+    const auto count = Index(rows_.size());
     boundary.node_normals.resize(boundary.dimension, count);
     boundary.node_initial_gap.resize(count);
     std::vector<Eigen::Triplet<double>> projections;
     for (auto& [key, row] : rows_) {
       const auto& [node, pair, is_opposite] = key;
-      row.number = static_cast<int>(boundary.nodes.size());
+      row.number = int(boundary.nodes.size());
       boundary.nodes.push_back(node);
       boundary.node_pair.push_back(pair);
       boundary.is_opposite.push_back(is_opposite);
@@ -40,15 +40,15 @@ class NodeTable {
         boundary.node_normals.col(row.number) = row.between_bodies->normal;
         boundary.node_initial_gap[row.number] = row.between_bodies->gap;
         for (const auto& [other, weight] : row.between_bodies->opposite)
-          projections.emplace_back(row.number, static_cast<int>(other), weight);
+          projections.emplace_back(row.number, int(other), weight);
         continue;
       }
-      const Obstacle& obstacle = *pairs_[static_cast<std::size_t>(pair)].obstacle;
+      const Obstacle& obstacle = *pairs_[std::size_t(pair)].obstacle;
       const Vector position = body_.space->nodes.col(node);
       boundary.node_normals.col(row.number) = obstacle.normal(position);
       boundary.node_initial_gap[row.number] = obstacle.gap(position);
     }
-    boundary.own_point.assign(static_cast<std::size_t>(count), -1);
+    boundary.own_point.assign(std::size_t(count), -1);
     if (projections.empty()) return;
     boundary.opposite_projection.resize(count, body_.space->node_count());
     boundary.opposite_projection.setFromTriplets(projections.begin(), projections.end());
@@ -60,12 +60,12 @@ class NodeTable {
       const Index node = patch.retained[i].node;
       if (node < 0) continue;
       const auto row = rows_.find(key(patch, node));
-      if (row != rows_.end()) boundary.own_point[static_cast<std::size_t>(row->second.number)] = patch.numbers[i];
+      if (row != rows_.end()) boundary.own_point[std::size_t(row->second.number)] = patch.numbers[i];
     }
     const auto add = [&](const NodeKey& key, const Eigen::Triplet<double>& entry) {
       const auto row = rows_.find(key);
       if (row == rows_.end()) return;  // no multiplier in use has the node in its trace
-      recovery.emplace_back(row->second.number, patch.numbers[static_cast<std::size_t>(entry.col())], entry.value());
+      recovery.emplace_back(row->second.number, patch.numbers[std::size_t(entry.col())], entry.value());
     };
     for (const auto& entry : patch.recovery) add(key(patch, entry.row()), entry);
     for (const auto& entry : patch.opposite_recovery) add({entry.row(), patch.first_pair(), 1}, entry);
@@ -96,7 +96,7 @@ void fill_boundary_nodes(const std::vector<std::unique_ptr<BoundaryPatch>>& patc
   table.fill(boundary);
   std::vector<Eigen::Triplet<double>> recovery;
   for (const auto& patch : patches) table.recover(*patch, boundary, recovery);
-  boundary.pressure_recovery.resize(static_cast<Index>(boundary.nodes.size()), boundary.size());
+  boundary.pressure_recovery.resize(Index(boundary.nodes.size()), boundary.size());
   boundary.pressure_recovery.setFromTriplets(recovery.begin(), recovery.end());
 }
 

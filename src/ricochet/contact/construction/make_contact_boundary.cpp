@@ -30,15 +30,15 @@ std::vector<Index> facets_of(const std::vector<ContactPair>& pairs) {
 }
 
 void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
-  boundary.pair.resize(static_cast<std::size_t>(count));
+  boundary.pair.resize(std::size_t(count));
   rows.normals.resize(boundary.dimension, count);
-  rows.tangents.resize(static_cast<std::size_t>(count));
-  rows.slips.assign(static_cast<std::size_t>(count * (boundary.dimension - 1)), 0);
+  rows.tangents.resize(std::size_t(count));
+  rows.slips.assign(std::size_t(count * (boundary.dimension - 1)), 0);
   rows.gap_rounding.resize(count);
   boundary.initial_gap.resize(count);
   boundary.weights.resize(count);
   boundary.net.resize(count);
-  boundary.large_sliding.assign(static_cast<std::size_t>(count), 0);
+  boundary.large_sliding.assign(std::size_t(count), 0);
   boundary.friction_coefficient.resize(count);
   boundary.friction_bound.resize(count);
 }
@@ -49,7 +49,7 @@ void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& p
   double largest = 0.0;
   for (const Multiplier& multiplier : patch.retained) largest = std::max(largest, multiplier.weight);
   for (const Multiplier& multiplier : patch.retained) {
-    const ContactPair& pair = pairs[static_cast<std::size_t>(multiplier.pair)];
+    const ContactPair& pair = pairs[std::size_t(multiplier.pair)];
     if (patch.space->has_functions() && multiplier.weight <= 1e-10 * largest) {
       throw Error(ErrorKind::invalid_input,
                   fmt::format("contact group \"{}\": a multiplier of \"{}\" has no positive share of the area; its "
@@ -67,7 +67,7 @@ void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& p
 
 void fill_friction(const BoundaryPatch& patch, const std::vector<ContactPair>& pairs, ContactBoundary& boundary) {
   for (std::size_t i = 0; i < patch.retained.size(); ++i) {
-    const FrictionLaw& law = pairs[static_cast<std::size_t>(patch.retained[i].pair)].friction;
+    const FrictionLaw& law = pairs[std::size_t(patch.retained[i].pair)].friction;
     boundary.friction_coefficient[patch.numbers[i]] = law.coefficient;
     boundary.friction_bound[patch.numbers[i]] = 0.0;
     if (law.bound == 0.0) continue;
@@ -90,13 +90,13 @@ class Operators {
            const PointConditions& conditions, const ContactTangents& tangents, bool follows,
            const std::vector<Index>& more_nodes, Index nodes_of_body) {
     const bool is_flat = !follows;
-    for (int dof = static_cast<int>(nodes_of_body) * d_, k = 0; nodes_of_body >= 0 && k < 2 * d_; ++k) {
+    for (int dof = int(nodes_of_body) * d_, k = 0; nodes_of_body >= 0 && k < 2 * d_; ++k) {
       gap_.emplace_back(point, dof + k, 0.0);
       for (int j = 0; j < d_ - 1; ++j) slip_.emplace_back(point * (d_ - 1) + j, dof + k, 0.0);
     }
-    for (const auto& [node, weight] : multiplier.trace) own_.emplace_back(point, static_cast<int>(node), weight);
+    for (const auto& [node, weight] : multiplier.trace) own_.emplace_back(point, int(node), weight);
     for (const Index node : more_nodes) {
-      for (int k = 0; k < d_; ++k) gap_.emplace_back(point, static_cast<int>(node) * d_ + k, 0.0);
+      for (int k = 0; k < d_; ++k) gap_.emplace_back(point, int(node) * d_ + k, 0.0);
     }
     for (const auto& [node, weight] : free_trace) add_node(point, node, weight, conditions.normal, tangents, is_flat);
     for (const auto& [node, weight] : conditions.opposite)
@@ -117,12 +117,12 @@ class Operators {
  private:
   void add_node(int point, Index node, double weight, const Vector& normal, const ContactTangents& tangents,
                 bool is_flat) {
-    trace_.emplace_back(point, static_cast<int>(node), weight);
+    trace_.emplace_back(point, int(node), weight);
     for (int k = 0; k < d_; ++k) {
-      const int dof = static_cast<int>(node) * d_ + k;
+      const int dof = int(node) * d_ + k;
       gap_.emplace_back(point, dof, weight * normal[k]);
       for (int j = 0; j < d_ - 1; ++j) {
-        const bool slips = tangents.slips[static_cast<std::size_t>(j)];
+        const bool slips = tangents.slips[std::size_t(j)];
         if (!slips && is_flat) continue;  // a row that follows the motion always has its entries
         slip_.emplace_back(point * (d_ - 1) + j, dof, slips ? weight * tangents.directions(k, j) : 0.0);
       }
@@ -147,14 +147,14 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     const int number = patch.numbers[i];
     const ContactTangents tangents =
         tangents_at(freest_node(patch, i, boundary.dimension, is_free), conditions.normal, is_free);
-    boundary.pair[static_cast<std::size_t>(number)] = multiplier.pair;
+    boundary.pair[std::size_t(number)] = multiplier.pair;
     boundary.initial_gap[number] = conditions.gap;
     rows.gap_rounding[number] = conditions.gap_rounding;
     rows.normals.col(number) = conditions.normal;
-    rows.tangents[static_cast<std::size_t>(number)] = tangents.directions;
+    rows.tangents[std::size_t(number)] = tangents.directions;
     for (int k = 0; k < boundary.dimension - 1; ++k) {
-      const bool slips = tangents.slips[static_cast<std::size_t>(k)];
-      rows.slips[static_cast<std::size_t>(number * (boundary.dimension - 1) + k)] = slips ? 1 : 0;
+      const bool slips = tangents.slips[std::size_t(k)];
+      rows.slips[std::size_t(number * (boundary.dimension - 1) + k)] = slips ? 1 : 0;
     }
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
@@ -169,10 +169,10 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
 std::shared_ptr<const SparseRowMatrix> rotating_trace(const CurvedContactData& data) {
   std::vector<char> rotates(static_cast<std::size_t>(data.trace.rows()), 0);
   for (const CurvedContactData::Point& point : data.points)
-    rotates[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
+    rotates[std::size_t(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
   if (std::ranges::find(rotates, 1) == rotates.end()) return nullptr;
   auto result = std::make_shared<SparseRowMatrix>(data.trace);
-  result->prune([&](Index row, Index, double) { return rotates[static_cast<std::size_t>(row)] != 0; });
+  result->prune([&](Index row, Index, double) { return rotates[std::size_t(row)] != 0; });
   return result;
 }
 
@@ -184,7 +184,7 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
     const auto found = std::ranges::find(data.obstacles, obstacle);
-    const auto number = static_cast<std::size_t>(found - data.obstacles.begin());
+    const auto number = std::size_t(found - data.obstacles.begin());
     if (found == data.obstacles.end()) data.obstacles.push_back(obstacle);
     return number;
   };
@@ -193,14 +193,14 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
     for (std::size_t i = 0; i < patch->retained.size(); ++i) {
       const Index node = freest_node(*patch, i, boundary.dimension, is_free);
       CurvedContactData::Point point{patch->numbers[i], number_of(patch->obstacle), {}};
-      for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
+      for (int k = 0; k < boundary.dimension; ++k) point.is_free[std::size_t(k)] = is_free(node, k);
       data.points.push_back(point);
     }
   }
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
-    const Obstacle* const obstacle = pairs[static_cast<std::size_t>(boundary.node_pair[i])].obstacle;
+    const Obstacle* const obstacle = pairs[std::size_t(boundary.node_pair[i])].obstacle;
     if (obstacle != nullptr && !obstacle->has_constant_normals())
-      data.nodes.push_back({static_cast<Index>(i), boundary.nodes[i], number_of(obstacle)});
+      data.nodes.push_back({Index(i), boundary.nodes[i], number_of(obstacle)});
   }
   if (data.points.empty()) return nullptr;
   data.node_positions = body.space->nodes;
@@ -219,7 +219,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   parts.push_back(make_sliding_geometry(body, pairs, patches, is_free, boundary));
   std::erase(parts, nullptr);
   if (parts.empty()) return;
-  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
+  rows.revision.assign(std::size_t(rows.size()), 0);
   boundary.geometry = combine(std::move(parts));
   // Initial gaps must be consistent with the rows, which are their derivatives.
   Vector gap = boundary.initial_gap;
@@ -233,7 +233,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   // Creates, at points in contact, the entries of free rigid bodies, and those of opposite surfaces.
   boundary.geometry->update(Vector::Zero(body.space->dof_count()), 0.0, nullptr, rows);
   // Numbers the initial rows 0, independent of the numbers of later updates.
-  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
+  rows.revision.assign(std::size_t(rows.size()), 0);
 }
 
 }  // namespace
@@ -268,7 +268,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   boundary.dimension = body.space->dimension;
   boundary.facets = facets_of(pairs);
   Index count = 0;
-  for (const auto& patch : patches) count += static_cast<Index>(patch->retained.size());
+  for (const auto& patch : patches) count += Index(patch->retained.size());
   const auto rows = std::make_shared<ContactRows>();
   resize(boundary, *rows, count);
   Operators operators(boundary.dimension);

@@ -91,7 +91,7 @@ SlidingPair::Point sliding_point(const BoundaryPatch& patch, std::size_t index, 
                            .normal = patch.rotating_normals[index],
                            .offset = patch.conditions[index].gap};
   for (int k = 0; k < dimension; ++k) {
-    point.is_free[static_cast<std::size_t>(k)] =
+    point.is_free[std::size_t(k)] =
         std::ranges::any_of(point.multiplier.trace, [&](const auto& entry) { return is_free(entry.first, k); });
   }
   return point;
@@ -151,7 +151,7 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     patch.rotating_normals.push_back(std::move(normal));
     patch.retained.push_back(std::move(multiplier));
   }
-  facing.points = static_cast<Index>(patch.retained.size());
+  facing.points = Index(patch.retained.size());
   facing.area = facing.covered = area_of(body, pair.facets);
   const double rounding = extent(body.space->nodes) * std::numeric_limits<double>::epsilon();
   for (PointConditions& conditions : patch.conditions) conditions.gap_rounding = 64.0 * rounding;
@@ -171,19 +171,19 @@ std::unique_ptr<ContactGeometry> make_sliding_geometry(const Body& body, const s
   for (const auto& patch : patches) {
     if (!patch->slides) continue;
     const int number = patch->first_pair();
-    const ContactPair& pair = pairs[static_cast<std::size_t>(number)];
-    boundary.opposite_node[static_cast<std::size_t>(number)] = facet_nodes(*body.space, pair.opposite_facets).front();
+    const ContactPair& pair = pairs[std::size_t(number)];
+    boundary.opposite_node[std::size_t(number)] = facet_nodes(*body.space, pair.opposite_facets).front();
     boundary.touches_itself = boundary.touches_itself || pair.is_self();
     const OwnNormals normals(body, pair);
     for (std::size_t entry = 0; entry < boundary.nodes.size(); ++entry) {
       if (boundary.node_pair[entry] != number) continue;
       const Index node = boundary.nodes[entry];
-      data.nodes.push_back({static_cast<Index>(entry), node, data.pairs.size(), normals.at_node(node)});
+      data.nodes.push_back({Index(entry), node, data.pairs.size(), normals.at_node(node)});
     }
     data.pairs.push_back(std::make_unique<SlidingPair>(data_of(body, pair, *patch, is_free)));
     const std::vector<Index>& reached = data.pairs.back()->nodes();
     boundary.reachable_nodes.insert(boundary.reachable_nodes.end(), reached.begin(), reached.end());
-    for (const int point : patch->numbers) boundary.large_sliding[static_cast<std::size_t>(point)] = 1;
+    for (const int point : patch->numbers) boundary.large_sliding[std::size_t(point)] = 1;
   }
   if (data.pairs.empty()) return nullptr;
   std::ranges::sort(data.nodes, [](const auto& one, const auto& other) { return one.entry < other.entry; });

@@ -31,8 +31,8 @@ std::map<Index, double> mean_gaps(const BoundaryPatch& patch) {
       for (Index q = 0; q < gap.size(); ++q) gap[q] = patch.obstacle->gap(quadrature.positions.col(q));
       const Matrix weighted = functions.values * quadrature.measure.asDiagonal();
       for (std::size_t k = 0; k < functions.anchors.size(); ++k) {
-        gaps[functions.anchors[k]] += weighted.row(static_cast<Index>(k)).dot(gap);
-        weights[functions.anchors[k]] += weighted.row(static_cast<Index>(k)).sum();
+        gaps[functions.anchors[k]] += weighted.row(Index(k)).dot(gap);
+        weights[functions.anchors[k]] += weighted.row(Index(k)).sum();
       }
     }
   }

@@ -21,7 +21,7 @@ using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
 std::vector<char> reached_by_traces(const Body& body, const Patches& patches) {
   std::vector<char> result(static_cast<std::size_t>(body.space->node_count()), 0);
   const auto mark = [&result](const TiedNodes::Weights& weights) {
-    for (const auto& [node, weight] : weights) result[static_cast<std::size_t>(node)] = 1;
+    for (const auto& [node, weight] : weights) result[std::size_t(node)] = 1;
   };
   for (const auto& patch : patches) {
     for (const TiedNodes::Weights& trace : patch->free_traces) mark(trace);
@@ -36,8 +36,7 @@ std::vector<Index> of_marked_nodes(const DisplacementSpace& space, const std::ve
   std::vector<Index> result;
   for (const Index facet : facets) {
     const std::vector<Index> nodes = facet_nodes(space, {facet});
-    if (std::ranges::all_of(nodes, [&](Index node) { return marked[static_cast<std::size_t>(node)] != 0; }))
-      result.push_back(facet);
+    if (std::ranges::all_of(nodes, [&](Index node) { return marked[std::size_t(node)] != 0; })) result.push_back(facet);
   }
   return result;
 }
@@ -75,7 +74,7 @@ RotatingPairsData::Point rotating_point(const Body& body, const BoundaryPatch& p
   point.offset = conditions.gap - gap_at_start(body, conditions.normal, patch.free_traces[index], conditions.opposite);
   const int d = body.space->dimension;
   const Index freest = freest_node(patch, index, d, is_free);
-  for (int k = 0; k < d; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(freest, k);
+  for (int k = 0; k < d; ++k) point.is_free[std::size_t(k)] = is_free(freest, k);
   point.nodes = point.normal.nodes();
   for (const auto* const weights : {&patch.free_traces[index], &conditions.opposite}) {
     for (const auto& [node, weight] : *weights) point.nodes.push_back(node);
@@ -91,16 +90,15 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
   std::map<std::pair<int, bool>, FacetsAround> around_nodes;
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
     const int number = boundary.node_pair[i];
-    const ContactPair& pair = pairs[static_cast<std::size_t>(number)];
-    if (!pair.has_two_sides() || pair.large_sliding || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)]))
-      continue;
+    const ContactPair& pair = pairs[std::size_t(number)];
+    if (!pair.has_two_sides() || pair.large_sliding || std::isnan(boundary.node_initial_gap[Index(i)])) continue;
     const bool opposite = boundary.is_opposite[i] != 0;
     auto found = around_nodes.find({number, opposite});
     if (found == around_nodes.end()) {
       const auto& facets = opposite ? pair.opposite_facets : pair.facets;
       found = around_nodes.emplace(std::pair{number, opposite}, facets_around_nodes(*body.space, facets)).first;
     }
-    const auto entry = static_cast<Index>(i);
+    const auto entry = Index(i);
     const Index node = boundary.nodes[i];
     const Vector normal = boundary.node_normals.col(entry);
     TiedNodes::Weights projection;
@@ -116,11 +114,11 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
 void find_rotating_normals(const Body& body, const std::vector<ContactPair>& pairs, const Patches& patches) {
   std::vector<char> marked = reached_by_traces(body, patches);
   if (body.tied != nullptr) {
-    for (const TiedNodes::Tie& tie : body.tied->ties()) marked[static_cast<std::size_t>(tie.node)] = 0;
+    for (const TiedNodes::Tie& tie : body.tied->ties()) marked[std::size_t(tie.node)] = 0;
   }
   for (const auto& patch : patches) {
     if (patch->obstacle != nullptr || patch->slides) continue;
-    const ContactPair& pair = pairs[static_cast<std::size_t>(patch->first_pair())];
+    const ContactPair& pair = pairs[std::size_t(patch->first_pair())];
     const FacetsAround own =
         facets_around_nodes(*body.space, of_marked_nodes(*body.space, patch->facets.parts.front().facets, marked));
     const FacetsAround opposite =

@@ -62,7 +62,7 @@ struct BodyPairing::Implementation {
       opposite_normal[facet.number] = facet.area_vector.normalized();
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       normals.push_back(reused_normal(own.facets()[k].area_vector.normalized()));
-      direct.push_back(finder.find(static_cast<int>(k), -normal_of(k)));
+      direct.push_back(finder.find(int(k), -normal_of(k)));
       if (!direct.back().segments.empty()) facing.push_back(own.facets()[k].number);
     }
   }
@@ -216,7 +216,7 @@ void BodyPairing::Implementation::make_mortar_points(const MultiplierSpace& spac
                                                      BodyContact& result) const {
   PairIntegration integration(body, map, own, finder, space, directions);
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
-    if (faces(k)) integration.add_facet(static_cast<int>(k), normal_of(k), direct[k]);
+    if (faces(k)) integration.add_facet(int(k), normal_of(k), direct[k]);
   }
   result.facing.lost = integration.lost();
   const bool at_facets = anchor_of(pair.multipliers) == MultiplierAnchor::facet;
@@ -268,7 +268,7 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
   for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.cell_height);
   const auto closes = [&](double gap) { return gap < 0.0 && (pair.closed_gaps || gap > -rounding_of_files * height); };
   PairingSummary& facing = result.facing;
-  facing.points = static_cast<Index>(result.multipliers.size());
+  facing.points = Index(result.multipliers.size());
   for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
     PointConditions& point = result.conditions[i];
     Vector apart = Vector::Zero(body.mesh->dimension);

@@ -75,7 +75,7 @@ struct BodyContact {
       }
       ++retained;
     }
-    const auto left_out = static_cast<Index>(multipliers.size() - retained);
+    const auto left_out = Index(multipliers.size() - retained);
     multipliers.resize(retained);
     conditions.resize(retained);
     return left_out;

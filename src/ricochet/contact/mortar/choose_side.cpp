@@ -60,7 +60,7 @@ double curvature_of(const Body& body, const FacetSurface& surface, double most) 
       for (std::size_t j = 0; j < i; ++j) add(surface.facets()[facets[j]], surface.facets()[facets[i]]);
     }
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  return count > 0 ? sum / double(count) : 0.0;
 }
 
 Side measure(const Body& body, const std::vector<Index>& facets,
@@ -74,7 +74,7 @@ Side measure(const Body& body, const std::vector<Index>& facets,
     side.stiffness += facet.area * material_of(body, surface.cells()[k]).young();
     area += facet.area;
   }
-  side.size /= static_cast<double>(std::max<std::size_t>(surface.facets().size(), 1));
+  side.size /= double(std::max<std::size_t>(surface.facets().size(), 1));
   side.stiffness /= area;
   side.curvature = curvature_of(body, surface, most);
   return side;

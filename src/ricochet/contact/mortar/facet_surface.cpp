@@ -28,8 +28,7 @@ bool is_straight(CellShape shape, const std::vector<Vector3>& nodes, double size
   const auto& vertices_of = node_vertices(shape, 2);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Vector3 mean = Vector3::Zero();
-    for (const int v : vertices_of[k])
-      mean += nodes[static_cast<std::size_t>(v)] / static_cast<double>(vertices_of[k].size());
+    for (const int v : vertices_of[k]) mean += nodes[std::size_t(v)] / double(vertices_of[k].size());
     if ((nodes[k] - mean).norm() > straight * size) return false;
   }
   return true;
@@ -93,7 +92,7 @@ void FacetSurface::update_geometry(Facet& facet) {
   facet.area = 0.0;
   facet.area_vector.setZero();
   for (int p = facet.first_piece; p < facet.first_piece + facet.piece_count; ++p) {
-    Piece& piece = pieces_[static_cast<std::size_t>(p)];
+    Piece& piece = pieces_[std::size_t(p)];
     const Vector3 area = area_vector(piece.corners, plane_);
     facet.area += area.norm();
     facet.area_vector += area;
@@ -113,13 +112,13 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   std::vector<Vector3> nodes;
   for (int k = 0; k < block.nodes_per_cell; ++k)
     nodes.push_back(in_space(mesh.nodes, block.cell(location.local)[k]) + moved);
-  Facet facet{number, static_cast<int>(pieces_.size())};
+  Facet facet{number, int(pieces_.size())};
   facet.size = facet_diameter(mesh, number);
   const bool as_straight = mesh.degree == 1 || (!moves_ && is_straight(block.shape, nodes, facet.size));
   for (const FlatPiece& local : flat_pieces(block.shape, as_straight ? 1 : 2)) {
-    Piece piece{static_cast<int>(facets_.size()), {}, {}, Vector3::Zero()};
+    Piece piece{int(facets_.size()), {}, {}, Vector3::Zero()};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto node = static_cast<std::size_t>(local[k] >= 0 ? local[k] : local[1]);
+      const auto node = std::size_t(local[k] >= 0 ? local[k] : local[1]);
       piece.corners[k] = nodes[node];
       piece.nodes[k] = block.cell(location.local)[node];
     }
@@ -133,10 +132,9 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
     }
     pieces_.push_back(piece);
   }
-  facet.piece_count = static_cast<int>(pieces_.size()) - facet.first_piece;
+  facet.piece_count = int(pieces_.size()) - facet.first_piece;
   update_geometry(facet);
-  for (int v = 0; v < vertex_count(block.shape); ++v)
-    facet.centre += nodes[static_cast<std::size_t>(v)] / vertex_count(block.shape);
+  for (int v = 0; v < vertex_count(block.shape); ++v) facet.centre += nodes[std::size_t(v)] / vertex_count(block.shape);
   facets_.push_back(facet);
 }
 

@@ -70,7 +70,7 @@ class SurfaceNormals {
     const auto may_have = [&](const BoxTree::Box& box) { return box.contains(normal); };
     Sight result;
     plane_tree_.visit(may_have, [&](int number) {
-      const Plane& plane = planes_[static_cast<std::size_t>(number)];
+      const Plane& plane = planes_[std::size_t(number)];
       if (angle_between(plane.normal, normal) > level) return;
       result.is_level = true;
       result.bend.add(plane.bend, plane.bend.weight);
@@ -94,7 +94,7 @@ class SurfaceNormals {
   [[nodiscard]] Bend find_bend(const Vector3& normal, const MayHave& may_have) const {
     Bend within, beside;
     joint_tree_.visit(may_have, [&](int number) {
-      const Joint& joint = joints_[static_cast<std::size_t>(number)];
+      const Joint& joint = joints_[std::size_t(number)];
       const double one = angle_between(normals_[joint.one], normal),
                    other = angle_between(normals_[joint.other], normal);
       if (std::max(one, other) <= joint.angle + level) {
@@ -117,7 +117,7 @@ class SurfaceNormals {
       const CellBlock& block = mesh.facets[location.block];
       for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(location.local)[v]].push_back(k);
     }
-    sets_ = DisjointSets(static_cast<Index>(facets.size()));
+    sets_ = DisjointSets(Index(facets.size()));
     facet_bends_.resize(facets.size());
     for (const auto& [node, here] : around) {
       for (std::size_t i = 0; i < here.size(); ++i) {
@@ -142,14 +142,14 @@ class SurfaceNormals {
     bend.bulge = (b.centre - a.centre).dot(normals_[one]) > 0.0 ? -bend.curvature : bend.curvature;
     for (const std::size_t facet : {one, other}) facet_bends_[facet].add(bend, 1.0);
     if (bends) joints_.push_back({one, other, angle, bend});
-    if (!bends) sets_.join(static_cast<Index>(one), static_cast<Index>(other));
+    if (!bends) sets_.join(Index(one), Index(other));
   }
 
   void find_planes() {
     std::map<Index, std::size_t> number_of;
     for (std::size_t k = 0; k < normals_.size(); ++k) {
       const FacetSurface::Facet& facet = surface_.facets()[k];
-      const auto [at, added] = number_of.try_emplace(sets_.root(static_cast<Index>(k)), planes_.size());
+      const auto [at, added] = number_of.try_emplace(sets_.root(Index(k)), planes_.size());
       if (added) planes_.emplace_back();
       Plane& plane = planes_[at->second];
       plane.normal += facet.area_vector;

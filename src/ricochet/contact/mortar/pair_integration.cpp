@@ -20,19 +20,19 @@ void gather_points(const FacetMap& map, Index facet, const FacetSegments& segmen
 
 /// Integrates once for each distinct direction among the multipliers of the facet.
 void PairIntegration::add_facet(int facet, const Eigen::Vector3d& normal, const FacetSegments& direct) {
-  const Index number = own_.facets()[static_cast<std::size_t>(facet)].number;
+  const Index number = own_.facets()[std::size_t(facet)].number;
   whole_.evaluate(number, quadrature_);
   space_.evaluate(quadrature_, functions_);
   const std::vector<Index> anchors = functions_.anchors;
   for (std::size_t k = 0; k < anchors.size(); ++k)
-    sums_[anchors[k]].whole += functions_.values.row(static_cast<Index>(k)).dot(quadrature_.measure);
+    sums_[anchors[k]].whole += functions_.values.row(Index(k)).dot(quadrature_.measure);
   std::vector<char> done(anchors.size(), 0), included(anchors.size(), 0);
   for (std::size_t k = 0; k < anchors.size(); ++k) {
     if (done[k] != 0) continue;
     const Eigen::Vector3d& direction = directions_.at(anchors[k]);
     for (std::size_t i = 0; i < anchors.size(); ++i) {
       included[i] = directions_.at(anchors[i]) == direction ? 1 : 0;
-      done[i] = static_cast<char>(done[i] | included[i]);
+      done[i] = char(done[i] | included[i]);
     }
     if (direction == -normal) {
       add_segments(facet, direct, included);
@@ -45,7 +45,7 @@ void PairIntegration::add_facet(int facet, const Eigen::Vector3d& normal, const 
 void PairIntegration::add_segments(int facet, const FacetSegments& segments, const std::vector<char>& included) {
   lost_ += segments.lost;
   if (segments.segments.empty()) return;
-  const Index number = own_.facets()[static_cast<std::size_t>(facet)].number;
+  const Index number = own_.facets()[std::size_t(facet)].number;
   gather_points(map_, number, segments, points_);
   const FacetQuadrature& at = points_.quadrature;
   space_.evaluate(at, functions_);
@@ -54,7 +54,7 @@ void PairIntegration::add_segments(int facet, const FacetSegments& segments, con
   for (std::size_t k = 0; k < included.size(); ++k) {
     if (included[k] == 0) continue;
     MultiplierSums& sums = sums_[functions_.anchors[k]];
-    const auto row = static_cast<Index>(k);
+    const auto row = Index(k);
     sums.weight += weighted.row(row).sum();
     for (Index j = 0; j < own.cols(); ++j) sums.own[at.nodes[j]] += own(row, j);
   }
@@ -72,7 +72,7 @@ void PairIntegration::add_segments(int facet, const FacetSegments& segments, con
     for (std::size_t k = 0; k < included.size(); ++k) {
       if (included[k] == 0) continue;
       MultiplierSums& sums = sums_[functions_.anchors[k]];
-      const auto row = static_cast<Index>(k);
+      const auto row = Index(k);
       for (Index j = 0; j < opposite.cols(); ++j) sums.opposite[nodes[j]] += opposite(row, j);
       const Eigen::Vector3d& direction = directions_.at(functions_.anchors[k]);
       const Vector gaps = apart.transpose() * direction.head(apart.rows());

@@ -26,8 +26,7 @@ PressureRows rows_between_vertices(const PairedSurfaces& surfaces, const Pressur
         if (row != rows.end()) vertex_rows.push_back(&row->second);
       }
       for (const auto* row : vertex_rows) {
-        for (const auto& [number, value] : *row)
-          middles[node][number] += value / static_cast<double>(vertex_rows.size());
+        for (const auto& [number, value] : *row) middles[node][number] += value / double(vertex_rows.size());
       }
     }
   }
@@ -97,7 +96,7 @@ std::vector<Eigen::Triplet<double>> opposite_pressure(const PairedSurfaces& surf
   rows.merge(rows_between_vertices(surfaces, rows));
   std::vector<Eigen::Triplet<double>> result;
   for (const auto& [node, row] : rows) {
-    for (const auto& [number, value] : row) result.emplace_back(static_cast<int>(node), number, value);
+    for (const auto& [number, value] : row) result.emplace_back(int(node), number, value);
   }
   return result;
 }

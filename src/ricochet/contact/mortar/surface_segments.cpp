@@ -104,7 +104,7 @@ SegmentFinder::SegmentFinder(const FacetMap& map, const FacetSurface& own, const
 
 /// Finds the opposite pieces that an own piece faces.
 void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std::vector<Cut>& cuts) const {
-  const FacetSurface::Piece& piece = own_.pieces()[static_cast<std::size_t>(number)];
+  const FacetSurface::Piece& piece = own_.pieces()[std::size_t(number)];
   if (-view.direction.dot(piece.normal) < edge_on) return;
   const ProjectedPiece own = view.flatten(piece);
   BoxTree::Box view_box;  // plane coordinates and height
@@ -113,17 +113,16 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
     view_box.extend(Vector3(at[0], at[1], view.direction.dot(corner)));
   }
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  const double own_depth = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].body_depth;
+  const double own_depth = any_depth ? infinite : own_.facets()[std::size_t(piece.facet)].body_depth;
   const auto may_face = [&](const BoxTree::Box& box) {
     return overlaps(box, view.first, view_box.min()[0], view_box.max()[0]) &&
            (view.plane || overlaps(box, view.second, view_box.min()[1], view_box.max()[1])) &&
            overlaps(box, view.direction, -infinite, view_box.max()[2] + own_depth);
   };
   opposite_.tree().visit(may_face, [&](int other) {
-    const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
+    const FacetSurface::Piece& candidate = opposite_.pieces()[std::size_t(other)];
     if (view.direction.dot(candidate.normal) < edge_on || piece.normal.dot(candidate.normal) >= 0.0) return;
-    if (!ignored_facets_.empty() && is_among(ignored_facets_[static_cast<std::size_t>(piece.facet)], candidate.facet))
-      return;
+    if (!ignored_facets_.empty() && is_among(ignored_facets_[std::size_t(piece.facet)], candidate.facet)) return;
     Cut cut{number, other, own, view.flatten(candidate), {}, 0.0};
     cut.common = intersect(own, cut.opposite, view.plane);
     if (cut.common.count == 0) return;
@@ -131,7 +130,7 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
     if (!(cut.area > sliver * std::min(own.area, cut.opposite.area))) return;
     PlanePoint centre = PlanePoint::Zero();
     for (int k = 0; k < cut.common.count; ++k) centre += cut.common.at(k) / cut.common.count;
-    const double other_depth = opposite_.facets()[static_cast<std::size_t>(candidate.facet)].body_depth;
+    const double other_depth = opposite_.facets()[std::size_t(candidate.facet)].body_depth;
     if (!any_depth && cut.gap_at(centre) < -deepest_overlap * std::min(own_depth, other_depth)) return;
     cuts.push_back(std::move(cut));
   });
@@ -154,9 +153,7 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
   };
   for (const Cut& cut : cuts) {
     const Index facet =
-        opposite_
-            .facets()[static_cast<std::size_t>(opposite_.pieces()[static_cast<std::size_t>(cut.opposite_piece)].facet)]
-            .number;
+        opposite_.facets()[std::size_t(opposite_.pieces()[std::size_t(cut.opposite_piece)].facet)].number;
     auto segment = std::ranges::find_if(segments, [facet](const SurfaceSegment& one) { return one.opposite == facet; });
     if (segment == segments.end()) segment = segments.insert(segments.end(), {facet, {}, {}, {}});
     const QuadratureRule& rule = view.plane ? interval_ : triangle_;
@@ -174,12 +171,12 @@ void SegmentFinder::add_points(const View& view, const std::vector<Cut>& cuts,
         weights.push_back(density * rule.weights[q]);
       }
     }
-    const Index rows = view.plane ? 1 : 2, before = segment->weights.size(), more = static_cast<Index>(at.size());
+    const Index rows = view.plane ? 1 : 2, before = segment->weights.size(), more = Index(at.size());
     segment->own_local.conservativeResize(rows, before + more);  // coordinates in the plane, until they are inverted
     segment->weights.conservativeResize(before + more);
     for (Index q = 0; q < more; ++q) {
-      segment->own_local.col(before + q) = at[static_cast<std::size_t>(q)].head(rows);
-      segment->weights[before + q] = weights[static_cast<std::size_t>(q)];
+      segment->own_local.col(before + q) = at[std::size_t(q)].head(rows);
+      segment->weights[before + q] = weights[std::size_t(q)];
     }
   }
 }
@@ -197,17 +194,17 @@ FacetSegments SegmentFinder::find(int facet, const Vector3& direction, bool any_
   const View view(static_cast<int>(own_.shift().size()), direction);
   FacetSegments result;
   result.axes = view.axes();
-  const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
+  const FacetSurface::Facet& own = own_.facets()[std::size_t(facet)];
   double projected_area = 0.0;
   std::vector<Cut> cuts;
   for (int piece = own.first_piece; piece < own.first_piece + own.piece_count; ++piece) {
     cuts.clear();
     cut_piece(view, piece, any_depth, cuts);
-    projected_area += view.flatten(own_.pieces()[static_cast<std::size_t>(piece)]).area;
+    projected_area += view.flatten(own_.pieces()[std::size_t(piece)]).area;
     add_points(view, cuts, result.segments);
   }
   std::erase_if(result.segments, [](const SurfaceSegment& segment) { return segment.weights.size() == 0; });
-  result.lost = static_cast<Index>(std::erase_if(
+  result.lost = Index(std::erase_if(
       result.segments, [&](SurfaceSegment& segment) { return !find_coordinates(own.number, result.axes, segment); }));
   double faced = 0.0;
   for (const SurfaceSegment& segment : result.segments) faced += segment.weights.sum();
@@ -224,7 +221,7 @@ void SegmentFinder::visit_pieces_at(const View& view, const PlanePoint& at, doub
            (view.plane || overlaps(box, view.second, at[1] - rim, at[1] + rim));
   };
   opposite_.tree().visit(may_face, [&](int number) {
-    const FacetSurface::Piece& piece = opposite_.pieces()[static_cast<std::size_t>(number)];
+    const FacetSurface::Piece& piece = opposite_.pieces()[std::size_t(number)];
     if (view.direction.dot(piece.normal) >= edge_on) visit(number, piece, view.flatten(piece));
   });
 }
@@ -242,7 +239,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Vector3& point, const Vector3
     const bool is_nearer = best_piece < 0 || std::abs(gap) < std::abs(best.gap) ||
                            (std::abs(gap) == std::abs(best.gap) && number < best_piece);
     if (!is_nearer) return;
-    best.facet = opposite_.facets()[static_cast<std::size_t>(piece.facet)].number;
+    best.facet = opposite_.facets()[std::size_t(piece.facet)].number;
     best.gap = gap;
     best_piece = number;
   });
@@ -256,7 +253,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Vector3& point, const Vector3
 }
 
 double SegmentFinder::thickness_behind(int facet) const {
-  const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
+  const FacetSurface::Facet& own = own_.facets()[std::size_t(facet)];
   const Vector3 direction = -own.area_vector.normalized();
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.project(own.centre);

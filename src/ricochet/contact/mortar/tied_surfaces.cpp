@@ -40,18 +40,18 @@ void leave_out_overhanging(BodyContact& contact, const std::function<bool(Index)
 std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
   std::map<Index, int> number, column;
   for (const Multiplier& multiplier : contact.multipliers) {
-    const auto next = static_cast<int>(number.size());
+    const auto next = int(number.size());
     number[multiplier.node] = next;
   }
   std::vector<Index> followed;
   const auto column_of = [&](Index node) {
-    const auto [entry, added] = column.try_emplace(node, static_cast<int>(followed.size()));
+    const auto [entry, added] = column.try_emplace(node, int(followed.size()));
     if (added) followed.push_back(node);
     return entry->second;
   };
   std::vector<Eigen::Triplet<double>> own, others;
   for (std::size_t i = 0; i < contact.multipliers.size(); ++i) {
-    const auto row = static_cast<int>(i);
+    const auto row = int(i);
     for (const auto& [node, weight] : contact.multipliers[i].trace) {
       if (weight == 0.0) continue;
       const auto found = number.find(node);
@@ -65,8 +65,8 @@ std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
       if (weight != 0.0) others.emplace_back(row, column_of(node), weight);
     }
   }
-  const auto count = static_cast<Index>(number.size());
-  SparseMatrix c(count, count), right(count, static_cast<Index>(followed.size()));
+  const auto count = Index(number.size());
+  SparseMatrix c(count, count), right(count, Index(followed.size()));
   c.setFromTriplets(own.begin(), own.end());
   right.setFromTriplets(others.begin(), others.end());
   if (count == 0) return {};
@@ -81,7 +81,7 @@ std::vector<TiedNodes::Tie> solve_ties(const BodyContact& contact) {
     double sum = 0.0;
     for (SparseRowMatrix::InnerIterator entry(weights, number.at(tie.node)); entry; ++entry) {
       if (std::abs(entry.value()) < least_weight) continue;
-      tie.weights.emplace_back(followed[static_cast<std::size_t>(entry.col())], entry.value());
+      tie.weights.emplace_back(followed[std::size_t(entry.col())], entry.value());
       sum += entry.value();
     }
     if (!(std::abs(sum - 1.0) <= rounding_of_sum))
@@ -159,10 +159,10 @@ double move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& spa
           continue;
         }
         // Nodes of the geometry that the displacement does not have move with the vertices around them.
-        const std::vector<int>& vertices = vertices_of[static_cast<std::size_t>(k)];
+        const std::vector<int>& vertices = vertices_of[std::size_t(k)];
         if (!std::ranges::all_of(vertices, [&](int v) { return tied.is_tied(own[v]); })) continue;
         Vector mean = Vector::Zero(d);
-        for (const int v : vertices) mean += moved(own[v]) / static_cast<double>(vertices.size());
+        for (const int v : vertices) mean += moved(own[v]) / double(vertices.size());
         moves[at[k]] = mean;
       }
     }

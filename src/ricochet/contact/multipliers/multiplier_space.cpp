@@ -58,9 +58,9 @@ std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, Mult
         const auto [entry, added] = by_anchor.try_emplace(anchor);
         Sums& sums = entry->second;
         if (added) sums.multiplier = {part.pair, at_facets ? -1 : anchor, at_facets ? anchor : -1, 0.0, {}};
-        sums.multiplier.weight += weighted.row(static_cast<Index>(k)).sum();
+        sums.multiplier.weight += weighted.row(Index(k)).sum();
         for (Index j = 0; j < quadrature.node_count(); ++j) {
-          sums.integrals[quadrature.nodes[j]] += products(static_cast<Index>(k), j);
+          sums.integrals[quadrature.nodes[j]] += products(Index(k), j);
         }
       }
     }

@@ -73,7 +73,7 @@ class DualMultipliers final : public MultiplierSpace {
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& retained) const override {
     std::map<Index, int> number;
-    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = static_cast<int>(i);
+    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = int(i);
     std::vector<Eigen::Triplet<double>> result;
     for (const Multiplier& multiplier : retained) {
       std::vector<std::pair<Index, double>> shares{{multiplier.node, 1.0}};
@@ -87,8 +87,7 @@ class DualMultipliers final : public MultiplierSpace {
       for (const auto& [anchor, share] : shares) sum += share;
       for (const auto& [anchor, share] : shares) {
         const int at = number.at(anchor);
-        result.emplace_back(static_cast<int>(multiplier.node), at,
-                            share / (sum * retained[static_cast<std::size_t>(at)].weight));
+        result.emplace_back(int(multiplier.node), at, share / (sum * retained[std::size_t(at)].weight));
       }
     }
     return result;
@@ -123,7 +122,7 @@ class DualMultipliers final : public MultiplierSpace {
     const auto& vertices_of = node_vertices(facet.shape, 2);
     for (std::size_t k = 0; k < vertices_of.size(); ++k) {
       if (vertices_of[k].size() != 2 || !transformed_.contains(facet.nodes[k])) continue;
-      const auto column = static_cast<Index>(k);
+      const auto column = Index(k);
       result(column, column) = 1.0 - 2.0 * alpha;
       for (const int v : vertices_of[k]) result(v, column) = alpha;
     }
@@ -143,9 +142,8 @@ class DualMultipliers final : public MultiplierSpace {
       for (std::size_t k = 0; k < vertices_of.size(); ++k) {
         // A node at the mean of an edge's ends has half of its own polynomial and a quarter of theirs; an
         // inner node has the products.
-        const double own = static_cast<double>(vertices_of[k].size()),
-                     all = static_cast<double>(vertices_of[at].size());
-        result(static_cast<Index>(k), static_cast<Index>(at)) = is_between(k, at) ? own / (all * all) : 0.0;
+        const double own = double(vertices_of[k].size()), all = double(vertices_of[at].size());
+        result(Index(k), Index(at)) = is_between(k, at) ? own / (all * all) : 0.0;
       }
     }
     return result;

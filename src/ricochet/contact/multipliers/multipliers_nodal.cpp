@@ -69,12 +69,12 @@ class NodalMultipliers final : public MultiplierSpace {
 
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& retained) const override {
-    const auto count = static_cast<Index>(retained.size());
+    const auto count = Index(retained.size());
     std::map<Index, Index> number;
     Vector own_weights(count);
     for (Index i = 0; i < count; ++i) {
-      number[retained[static_cast<std::size_t>(i)].node] = i;
-      own_weights[i] = retained[static_cast<std::size_t>(i)].weight;
+      number[retained[std::size_t(i)].node] = i;
+      own_weights[i] = retained[std::size_t(i)].weight;
     }
     // gathering(a, j) = ψ_a(x_j): the identity with degree 1.
     SparseRowMatrix gathering(count, count), spreading(count, count);
@@ -87,8 +87,7 @@ class NodalMultipliers final : public MultiplierSpace {
     std::vector<Eigen::Triplet<double>> result;
     for (Index row = 0; row < count; ++row) {
       for (SparseRowMatrix::InnerIterator entry(recovery, row); entry; ++entry) {
-        result.emplace_back(static_cast<int>(retained[static_cast<std::size_t>(row)].node),
-                            static_cast<int>(entry.col()), entry.value());
+        result.emplace_back(int(retained[std::size_t(row)].node), int(entry.col()), entry.value());
       }
     }
     return result;
@@ -109,25 +108,25 @@ class NodalMultipliers final : public MultiplierSpace {
     for (const ContactPatch::Part& part : patch().parts) {
       for (const auto& [node, vertices] : middle_nodes(*patch().body->space, part.facets)) {
         const auto point = number.find(node);
-        if (point == number.end() || is_middle[static_cast<std::size_t>(point->second)] != 0) continue;
+        if (point == number.end() || is_middle[std::size_t(point->second)] != 0) continue;
         std::vector<Index> retained_vertices;
         for (const Index vertex : vertices) {
           const auto found = number.find(vertex);
           if (found != number.end()) retained_vertices.push_back(found->second);
         }
         // If supports have removed the vertices, the mid-side node keeps its own force.
-        is_middle[static_cast<std::size_t>(point->second)] = retained_vertices.empty() ? 0 : 1;
+        is_middle[std::size_t(point->second)] = retained_vertices.empty() ? 0 : 1;
         for (const Index vertex : retained_vertices) {
-          const double share = 1.0 / static_cast<double>(retained_vertices.size());
-          gather.emplace_back(static_cast<int>(vertex), static_cast<int>(point->second), share);
-          spread.emplace_back(static_cast<int>(point->second), static_cast<int>(vertex), share);
+          const double share = 1.0 / double(retained_vertices.size());
+          gather.emplace_back(int(vertex), int(point->second), share);
+          spread.emplace_back(int(point->second), int(vertex), share);
         }
       }
     }
     for (std::size_t i = 0; i < is_middle.size(); ++i) {
       if (is_middle[i] != 0) continue;
-      gather.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
-      spread.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+      gather.emplace_back(int(i), int(i), 1.0);
+      spread.emplace_back(int(i), int(i), 1.0);
     }
     gathering.setFromTriplets(gather.begin(), gather.end());
     spreading.setFromTriplets(spread.begin(), spread.end());

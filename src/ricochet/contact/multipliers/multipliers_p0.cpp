@@ -25,7 +25,7 @@ class P0Multipliers final : public MultiplierSpace {
     std::vector<Eigen::Triplet<double>> result;
     for (std::size_t i = 0; i < retained.size(); ++i) {
       for (const auto& [node, weight] : retained[i].trace) {
-        result.emplace_back(static_cast<int>(node), static_cast<int>(i), 1.0 / area.at(node));
+        result.emplace_back(int(node), int(i), 1.0 / area.at(node));
       }
     }
     return result;

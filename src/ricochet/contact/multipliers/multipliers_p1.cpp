@@ -23,7 +23,7 @@ class P1Multipliers final : public MultiplierSpace {
   [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& retained) const override {
     std::map<Index, int> number;
-    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = static_cast<int>(i);
+    for (std::size_t i = 0; i < retained.size(); ++i) number[retained[i].node] = int(i);
     const DisplacementSpace& space = *patch().body->space;
     std::set<Index> done;
     std::vector<Eigen::Triplet<double>> result;
@@ -42,9 +42,8 @@ class P1Multipliers final : public MultiplierSpace {
             if (vertex != number.end()) retained_vertices.push_back(vertex->second);
           }
           for (const int vertex : retained_vertices) {
-            const double weight = retained[static_cast<std::size_t>(vertex)].weight;
-            result.emplace_back(static_cast<int>(node), vertex,
-                                1.0 / (weight * static_cast<double>(retained_vertices.size())));
+            const double weight = retained[std::size_t(vertex)].weight;
+            result.emplace_back(int(node), vertex, 1.0 / (weight * double(retained_vertices.size())));
           }
         }
       }
@@ -64,10 +63,9 @@ class P1Multipliers final : public MultiplierSpace {
       free.push_back(v);
       result.anchors.push_back(facet.nodes[v]);
     }
-    result.values.resize(static_cast<Index>(free.size()), facet.measure.size());
+    result.values.resize(Index(free.size()), facet.measure.size());
     for (std::size_t k = 0; k < free.size(); ++k) {
-      result.values.row(static_cast<Index>(k)) =
-          facet.hats->row(free[k]) + supported / static_cast<double>(free.size());
+      result.values.row(Index(k)) = facet.hats->row(free[k]) + supported / double(free.size());
     }
   }
 };

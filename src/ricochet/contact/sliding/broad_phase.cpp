@@ -8,7 +8,7 @@ namespace ricochet {
 BroadPhase::BroadPhase(const std::vector<std::unique_ptr<SlidingPair>>& pairs, const Points& nodes) : nodes_(nodes) {
   std::map<std::vector<Index>, int> numbers;
   const auto surface_of = [&](const SlidingPair& pair, const std::vector<Index>& facets) {
-    const auto [entry, is_new] = numbers.try_emplace(facets, static_cast<int>(surfaces_.size()));
+    const auto [entry, is_new] = numbers.try_emplace(facets, int(surfaces_.size()));
     if (is_new) surfaces_.push_back({facet_nodes(*pair.data().body.space, facets), {}, 0.0});
     return entry->second;
   };
@@ -38,8 +38,7 @@ void BroadPhase::move(const Vector& displacement, const Vector* start) {
 bool BroadPhase::are_apart(std::size_t pair) const {
   const Pair& of = pairs_[pair];
   if (of.first < 0) return false;
-  const Surface &first = surfaces_[static_cast<std::size_t>(of.first)],
-                &second = surfaces_[static_cast<std::size_t>(of.second)];
+  const Surface &first = surfaces_[std::size_t(of.first)], &second = surfaces_[std::size_t(of.second)];
   const double reach = reach_of_sliding(std::max(first.way, second.way), of.height);
   // False if a displacement is NaN: such pairs are evaluated, and the error is found there.
   return first.box.exteriorDistance(second.box) > reach;

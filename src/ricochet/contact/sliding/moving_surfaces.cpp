@@ -60,12 +60,12 @@ void MovingSurfaces::enable_self_contact() {
   std::map<Index, std::vector<int>> at_node;
   for (const FacetSurface::Facet& facet : own_.facets()) {
     nodes_of.push_back(facet_nodes(space, {facet.number}));
-    for (const Index node : nodes_of.back()) at_node[node].push_back(static_cast<int>(nodes_of.size()) - 1);
+    for (const Index node : nodes_of.back()) at_node[node].push_back(int(nodes_of.size()) - 1);
   }
   const auto widen = [&](const std::vector<int>& facets) {
     std::vector<int> result;
     for (const int facet : facets) {
-      for (const Index node : nodes_of[static_cast<std::size_t>(facet)])
+      for (const Index node : nodes_of[std::size_t(facet)])
         result.insert(result.end(), at_node[node].begin(), at_node[node].end());
     }
     std::ranges::sort(result);
@@ -74,9 +74,9 @@ void MovingSurfaces::enable_self_contact() {
   };
   std::vector<std::vector<int>> ignored_facets;
   std::vector<double> depths;
-  for (int facet = 0; facet < static_cast<int>(nodes_of.size()); ++facet) {
+  for (int facet = 0; facet < int(nodes_of.size()); ++facet) {
     ignored_facets.push_back(widen(widen({facet})));
-    const double height = own_.facets()[static_cast<std::size_t>(facet)].cell_height;
+    const double height = own_.facets()[std::size_t(facet)].cell_height;
     const double thickness = finder_.thickness_behind(facet);
     depths.push_back(std::isfinite(thickness) ? min_thickness_ratio * thickness : height);
   }
@@ -91,8 +91,7 @@ double MovingSurfaces::depth_at(Index node) const {
   const auto around = facets_at_.find(node);
   if (around == facets_at_.end()) return own_.height_at(node);
   double least = std::numeric_limits<double>::infinity();
-  for (const int facet : around->second)
-    least = std::min(least, own_.facets()[static_cast<std::size_t>(facet)].body_depth);
+  for (const int facet : around->second) least = std::min(least, own_.facets()[std::size_t(facet)].body_depth);
   return least;
 }
 

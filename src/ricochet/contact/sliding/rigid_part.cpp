@@ -15,7 +15,7 @@ constexpr double least_inertia = 1e-13;
 Eigen::Vector3d mean_of(const Vectors& values) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  return sum / double(values.size());
 }
 
 /// Returns ω with I ω = momentum, I the inertia of unit masses at the points about their middle.

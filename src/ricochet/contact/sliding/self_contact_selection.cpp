@@ -23,8 +23,8 @@ void visit_faced_nodes(const SlidingView& view, double least_weight, const Visit
 
 SelfContactSelection::SelfContactSelection(const SlidingPair& pair, Index nodes, int degree)
     : choices_(pair.points().size(), Choice::none),
-      is_faced_(static_cast<std::size_t>(nodes)),
-      is_anchor_(static_cast<std::size_t>(nodes)),
+      is_faced_(std::size_t(nodes)),
+      is_anchor_(std::size_t(nodes)),
       least_weight_(degree == 1 ? at_the_rim : 0.0) {
   std::map<Index, std::vector<std::size_t>> at_node;
   for (std::size_t i = 0; i < pair.points().size(); ++i) {
@@ -48,18 +48,16 @@ SelfContactSelection::SelfContactSelection(const SlidingPair& pair, Index nodes,
 bool SelfContactSelection::is_free(std::size_t point) const {
   const SlidingView* const view = views_[point];
   if (view == nullptr || !view->faces) return false;
-  bool result =
-      std::ranges::none_of(anchors_[point], [&](Index node) { return is_faced_[static_cast<std::size_t>(node)] != 0; });
-  visit_faced_nodes(*view, least_weight_,
-                    [&](Index node) { result = result && is_anchor_[static_cast<std::size_t>(node)] == 0; });
+  bool result = std::ranges::none_of(anchors_[point], [&](Index node) { return is_faced_[std::size_t(node)] != 0; });
+  visit_faced_nodes(*view, least_weight_, [&](Index node) { result = result && is_anchor_[std::size_t(node)] == 0; });
   return result;
 }
 
 void SelfContactSelection::select(std::size_t point) {
   choices_[point] = Choice::chosen;
   selected_.push_back(point);
-  for (const Index node : anchors_[point]) is_anchor_[static_cast<std::size_t>(node)] = 1;
-  visit_faced_nodes(*views_[point], least_weight_, [&](Index node) { is_faced_[static_cast<std::size_t>(node)] = 1; });
+  for (const Index node : anchors_[point]) is_anchor_[std::size_t(node)] = 1;
+  visit_faced_nodes(*views_[point], least_weight_, [&](Index node) { is_faced_[std::size_t(node)] = 1; });
 }
 
 /// Extends the selection to neighbours of selected points, recursively.

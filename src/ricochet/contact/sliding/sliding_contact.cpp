@@ -127,7 +127,7 @@ class SlidingContact final : public ContactGeometry {
       if (!pair_views_[k].chosen) continue;
       const std::vector<Choice>& choices = pair_views_[k].chosen->choices();
       for (std::size_t i = 0; i < choices.size(); ++i) {
-        if (choices[i] == Choice::left_out) eligible[static_cast<std::size_t>(number(k, i))] = 0;
+        if (choices[i] == Choice::left_out) eligible[std::size_t(number(k, i))] = 0;
       }
     }
   }
@@ -143,8 +143,7 @@ class SlidingContact final : public ContactGeometry {
   /// points and the pairs that were skipped.
   [[nodiscard]] Index row_value_count() const override {
     Index points = 0;
-    for (const PairViews& views : pair_views_)
-      points += views.chosen ? static_cast<Index>(views.chosen->choices().size()) : 0;
+    for (const PairViews& views : pair_views_) points += views.chosen ? Index(views.chosen->choices().size()) : 0;
     return displacements_.count() + points + apart_.count();
   }
   [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
@@ -193,7 +192,7 @@ class SlidingContact final : public ContactGeometry {
     Index at = displacements_.count();
     for (const PairViews& views : pair_views_) {
       if (!views.chosen) continue;
-      for (const Choice choice : views.chosen->choices()) rows.sliding_state[at++] = static_cast<double>(choice);
+      for (const Choice choice : views.chosen->choices()) rows.sliding_state[at++] = double(choice);
     }
     for (std::size_t k = 0; k < pair_views_.size(); ++k) {
       if (apart_.may_be_apart(k)) rows.sliding_state[at++] = pair_views_[k].is_apart ? 1.0 : 0.0;

@@ -106,7 +106,7 @@ struct SlidingPair::Implementation {
     std::map<Index, int> by_anchor;
     for (std::size_t i = 0; i < data.points.size(); ++i) {
       const Multiplier& multiplier = data.points[i].multiplier;
-      by_anchor[multiplier.node >= 0 ? multiplier.node : multiplier.facet] = static_cast<int>(i);
+      by_anchor[multiplier.node >= 0 ? multiplier.node : multiplier.facet] = int(i);
     }
     const FacetIntegration whole(data.body);
     FacetQuadrature quadrature;
@@ -133,18 +133,18 @@ struct SlidingPair::Implementation {
 void SlidingPair::Implementation::integrate_from(int facet, Content content, const std::vector<char>& left_out,
                                                  const std::vector<char>& any_depth,
                                                  std::vector<SlidingView>& views) const {
-  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
+  const std::vector<int>& here = points_of[std::size_t(facet)];
   for (const bool deep : {false, true}) {
     included.assign(here.size(), 0);
     for (std::size_t k = 0; k < here.size(); ++k) {
       if (here[k] < 0) continue;
-      const auto point = static_cast<std::size_t>(here[k]);
+      const auto point = std::size_t(here[k]);
       const bool is_out = !left_out.empty() && left_out[point] != 0;
       const bool admits_depth = !is_self && !any_depth.empty() && any_depth[point] != 0;
       included[k] = !is_out && admits_depth == deep ? 1 : 0;
     }
     if (std::ranges::find(included, 1) == included.end()) continue;
-    const SlidingVector n = current_normals[static_cast<std::size_t>(facet)].normalized();
+    const SlidingVector n = current_normals[std::size_t(facet)].normalized();
     const FacetSegments segments = surfaces.finder().find(facet, n, deep);
     if (!segments.segments.empty()) integrate(facet, segments, n, content, views);
   }
@@ -152,8 +152,8 @@ void SlidingPair::Implementation::integrate_from(int facet, Content content, con
 
 void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segments, const SlidingVector& n,
                                             Content content, std::vector<SlidingView>& views) const {
-  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
-  const Index number = surfaces.own().facets()[static_cast<std::size_t>(facet)].number, d = plane ? 2 : 3;
+  const std::vector<int>& here = points_of[std::size_t(facet)];
+  const Index number = surfaces.own().facets()[std::size_t(facet)].number, d = plane ? 2 : 3;
   gather_points(surfaces.map(), number, segments, points);
   const FacetQuadrature& at = points.quadrature;
   space->evaluate(at, functions);
@@ -172,8 +172,8 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
       const double gap = n.head(d).dot(at.positions.col(begin + q) - projection.at.head(d));
       for (std::size_t k = 0; k < here.size(); ++k) {
         if (included[k] == 0) continue;
-        const auto point = static_cast<std::size_t>(here[k]);
-        const double weight = sight_weight * weighted(static_cast<Index>(k), begin + q);
+        const auto point = std::size_t(here[k]);
+        const double weight = sight_weight * weighted(Index(k), begin + q);
         Sums& sum = sums[point];
         sum.weight += weight;
         sum.gap += weight * gap;
@@ -201,14 +201,14 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
 /// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν).
 void SlidingPair::Implementation::add_normal_derivative(int facet, const SlidingVector& n,
                                                         std::vector<SlidingView>& views) const {
-  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
-  const double length = current_normals[static_cast<std::size_t>(facet)].norm();
+  const std::vector<int>& here = points_of[std::size_t(facet)];
+  const double length = current_normals[std::size_t(facet)].norm();
   for (std::size_t k = 0; k < here.size(); ++k) {
     if (included[k] == 0) continue;
-    const auto point = static_cast<std::size_t>(here[k]);
+    const auto point = std::size_t(here[k]);
     SlidingVector& pull = sums[point].pull;
     const SlidingVector w = (n * n.dot(pull) - pull) / length;
-    normals[static_cast<std::size_t>(facet)].visit_derivative(
+    normals[std::size_t(facet)].visit_derivative(
         data.body.space->nodes, evaluated_displacement, w, [&](Index node, const SlidingVector& value) {
           entry_of<SlidingVector>(views[point].row, node, SlidingVector::Zero()) += value;
         });
@@ -293,7 +293,7 @@ void SlidingPair::compute_views(const Vector& displacement, Content content, con
     view.row.clear();
   }
   for (std::size_t facet = 0; facet < own.points_of.size(); ++facet)
-    own.integrate_from(static_cast<int>(facet), content, left_out, any_depth, views);
+    own.integrate_from(int(facet), content, left_out, any_depth, views);
   for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, content, views[i]);
 }
 
@@ -312,7 +312,7 @@ double largest_motion(const SlidingPair& pair, const Vector& to, const Vector& f
   SpaceVector mean = SpaceVector::Zero(d);
   if (pair.is_self()) {
     for (const Index node : pair.nodes()) mean += way(node);
-    mean /= static_cast<double>(pair.nodes().size());
+    mean /= double(pair.nodes().size());
   }
   double longest = 0.0;
   for (const Index node : pair.nodes()) longest = std::max(longest, (way(node) - mean).norm());

@@ -81,12 +81,11 @@ void SlidingRows::set_directions(const SlidingPair::Point& point, const SlidingV
   const Index d = dimension();
   const Vector normal = direction.head(d);
   const ContactTangents tangents =
-      tangents_at(0, normal, [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; });
+      tangents_at(0, normal, [&](Index, int component) { return point.is_free[std::size_t(component)]; });
   rows.normals.col(point.number) = normal;
-  rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
+  rows.tangents[std::size_t(point.number)] = tangents.directions;
   for (Index j = 0; j < d - 1; ++j)
-    rows.slips[static_cast<std::size_t>(point.number * (d - 1) + j)] =
-        tangents.slips[static_cast<std::size_t>(j)] ? 1 : 0;
+    rows.slips[std::size_t(point.number * (d - 1) + j)] = tangents.slips[std::size_t(j)] ? 1 : 0;
 }
 
 /// Writes t ⊗ τ with the trace in trace_.
@@ -95,8 +94,8 @@ void SlidingRows::write_slips(Index point, const ContactRows& rows) {
   for (Index j = 0; j < d - 1; ++j) {
     const Index row = point * (d - 1) + j;
     entries_.clear();
-    if (rows.slips[static_cast<std::size_t>(row)] != 0) {
-      const auto tangent = rows.tangents[static_cast<std::size_t>(point)].col(j);
+    if (rows.slips[std::size_t(row)] != 0) {
+      const auto tangent = rows.tangents[std::size_t(point)].col(j);
       for (const auto& [node, weight] : trace_) {
         for (Index c = 0; c < d; ++c) entries_.emplace_back(node * d + c, weight * tangent[c]);
       }
@@ -106,14 +105,14 @@ void SlidingRows::write_slips(Index point, const ContactRows& rows) {
 }
 
 void SlidingRows::finish(ContactRows& rows) {
-  changed_.assign(static_cast<std::size_t>(rows.size()), 0);
+  changed_.assign(std::size_t(rows.size()), 0);
   gap_writer_.write(rows.gap_operator, changed_);
   const Index tangents = dimension() - 1;
-  slip_changed_.assign(static_cast<std::size_t>(rows.size() * tangents), 0);
+  slip_changed_.assign(std::size_t(rows.size() * tangents), 0);
   slip_writer_.write(rows.tangential_trace, slip_changed_);
   ++revision_;
   for (std::size_t i = 0; i < changed_.size(); ++i) {
-    const auto first = slip_changed_.begin() + static_cast<std::ptrdiff_t>(i) * tangents;
+    const auto first = slip_changed_.begin() + std::ptrdiff_t(i) * tangents;
     if (changed_[i] != 0 || std::any_of(first, first + tangents, [](char c) { return c != 0; }))
       rows.revision[i] = revision_;
   }

@@ -26,7 +26,7 @@ class SurfaceDisplacements {
   void write(const Vector& displacement, const Vector* start, Vector& values) const {
     values[0] = start != nullptr ? 1.0 : 0.0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Index at = 1 + static_cast<Index>(i) * dimension_, first = nodes_[i] * dimension_;
+      const Index at = 1 + Index(i) * dimension_, first = nodes_[i] * dimension_;
       values.segment(at, dimension_) = displacement.segment(first, dimension_);
       if (start != nullptr) values.segment(at + half(), dimension_) = start->segment(first, dimension_);
     }
@@ -36,7 +36,7 @@ class SurfaceDisplacements {
   /// whether rows are those of a step.
   bool read(const Vector& values, Vector& displacement, Vector& start) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Index at = 1 + static_cast<Index>(i) * dimension_, first = nodes_[i] * dimension_;
+      const Index at = 1 + Index(i) * dimension_, first = nodes_[i] * dimension_;
       displacement.segment(first, dimension_) = values.segment(at, dimension_);
       start.segment(first, dimension_) = values.segment(at + half(), dimension_);
     }
@@ -44,7 +44,7 @@ class SurfaceDisplacements {
   }
 
  private:
-  [[nodiscard]] Index half() const { return dimension_ * static_cast<Index>(nodes_.size()); }
+  [[nodiscard]] Index half() const { return dimension_ * Index(nodes_.size()); }
 
   Index dimension_;
   std::vector<Index> nodes_;  ///< of all pairs, ascending

@@ -20,7 +20,7 @@ class ContactFields final : public FieldSource {
         has_friction_(context.problem.contact.has_friction()),
         deforms_(has_finite_strain(context.body)) {
     const Index nodes = space_.node_count();
-    const auto count = static_cast<std::size_t>(nodes);
+    const auto count = std::size_t(nodes);
     gap_.assign(count, 0.0);
     status_.assign(count, 0);
     add_stresses(context, "contact_pressure", "friction_traction", stresses_);
@@ -39,13 +39,11 @@ class ContactFields final : public FieldSource {
     bool is_requested = false;
   };
 
-  [[nodiscard]] std::size_t number(Index node) const {
-    return static_cast<std::size_t>(space_.number[static_cast<std::size_t>(node)]);
-  }
+  [[nodiscard]] std::size_t number(Index node) const { return std::size_t(space_.number[std::size_t(node)]); }
   void add_stresses(const FieldContext& context, const char* pressure, const char* traction, Stresses& stresses) {
     const Index nodes = space_.node_count();
-    stresses.pressure.assign(static_cast<std::size_t>(nodes), 0.0);
-    stresses.traction.assign(static_cast<std::size_t>(3 * nodes), 0.0);
+    stresses.pressure.assign(std::size_t(nodes), 0.0);
+    stresses.traction.assign(std::size_t(3 * nodes), 0.0);
     stresses.is_requested = context.any_is_requested({pressure, traction});
     if (context.is_requested(pressure))
       fields_.push_back({pressure, FieldLocation::nodes, 1, false, nodes, stresses.pressure.data()});
@@ -85,17 +83,16 @@ void ContactFields::evaluate(const State& state) {
     evaluate(*forces.rows, forces.normal_reaction, forces.tangential_reaction, stresses_);
   }
   for (Index i = 0; i < node_gap_.size(); ++i) {
-    const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
+    const std::size_t node = number(contact.nodes[std::size_t(i)]);
     gap_[node] = std::fmin(gap_[node], node_gap_[i]);  // the number, if one of the two is NaN
     status_[node] = std::max(status_[node], 0);
     // A node has the status of its own contact point or, without one, of the points from which its pressure is
     // recovered.
     const auto include_status = [&](Index point) {
-      const auto at = static_cast<std::size_t>(point);
-      if (at < state.contact_status.size())
-        status_[node] = std::max(status_[node], static_cast<int>(state.contact_status[at]));
+      const auto at = std::size_t(point);
+      if (at < state.contact_status.size()) status_[node] = std::max(status_[node], int(state.contact_status[at]));
     };
-    const Index own = contact.own_point[static_cast<std::size_t>(i)];
+    const Index own = contact.own_point[std::size_t(i)];
     if (own >= 0) include_status(own);
     if (own != -1) continue;
     contact.visit_recovery(i, [&](Index point, double value) {
@@ -122,7 +119,7 @@ void ContactFields::evaluate(const ContactRows& rows, const Vector& normal, cons
   contact.recover_pressure(normal, node_pressure_);
   add_up_pressures();
   for (Index i = 0; i < node_pressure_.size(); ++i) {
-    double& pressure = stresses.pressure[number(contact.nodes[static_cast<std::size_t>(i)])];
+    double& pressure = stresses.pressure[number(contact.nodes[std::size_t(i)])];
     pressure = std::max(pressure, node_pressure_[i]);
   }
   if (has_friction_) evaluate_friction(rows, tangential, stresses.traction);
@@ -139,15 +136,15 @@ void ContactFields::add_up_pressures() {
     same = i > 0 && nodes[i] == nodes[i - 1] ? same + 1 : 1;
     most = std::max(most, same);
   }
-  entries_per_node_ = static_cast<Index>(ranks.maximum(static_cast<double>(most)));
+  entries_per_node_ = Index(ranks.maximum(double(most)));
   per_node_.setZero(space_.node_count() * entries_per_node_);
   const auto index = [&](std::size_t i) {
     same = i > 0 && nodes[i] == nodes[i - 1] ? same + 1 : 0;
     return nodes[i] * entries_per_node_ + same;
   };
-  for (std::size_t i = 0; i < nodes.size(); ++i) per_node_[index(i)] = node_pressure_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < nodes.size(); ++i) per_node_[index(i)] = node_pressure_[Index(i)];
   ranks.accumulate(per_node_);
-  for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[static_cast<Index>(i)] = per_node_[index(i)];
+  for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[Index(i)] = per_node_[index(i)];
 }
 
 /// Uses the largest status of the ranks, as for several contacts.
@@ -178,7 +175,7 @@ void ContactFields::evaluate_friction(const ContactRows& rows, const Vector& tan
   for (std::size_t i = 0; i < contact.nodes.size() && tangential.size() > 0; ++i) {
     // On the opposite body the traction has the opposite sign.
     const double sign = contact.is_opposite[i] != 0 ? 1.0 : -1.0;
-    contact.visit_recovery(static_cast<Index>(i), [&](Index point, double value) {
+    contact.visit_recovery(Index(i), [&](Index point, double value) {
       node_traction_.segment(contact.nodes[i] * d, d) += sign * value * rows.along_tangents(point, tangential);
     });
   }

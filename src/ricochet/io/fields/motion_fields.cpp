@@ -30,7 +30,7 @@ class MotionFields final : public FieldSource {
   };
   void add(const FieldContext& context, const char* name, Vector State::*member) {
     if (!context.is_requested(name)) return;
-    motions_.push_back({name, member, std::vector<double>(static_cast<std::size_t>(3 * space_.node_count()), 0.0)});
+    motions_.push_back({name, member, std::vector<double>(std::size_t(3 * space_.node_count()), 0.0)});
   }
 
   const DisplacementSpace& space_;

@@ -64,7 +64,7 @@ std::vector<std::string> expand_field_names(const std::vector<std::string>& name
 void copy_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field) {
   const Index d = space.dimension;
   for (Index node = 0; node < space.node_count(); ++node) {
-    double* const to = field.data() + 3 * space.number[static_cast<std::size_t>(node)];
+    double* const to = field.data() + 3 * space.number[std::size_t(node)];
     for (Index k = 0; k < d; ++k) to[k] = values[node * d + k];
   }
 }

@@ -16,7 +16,7 @@ class StressFields final : public FieldSource {
     const auto add = [&](const char* name, FieldLocation location, int components, std::vector<double>& values) {
       const Index rows = location == FieldLocation::cells ? cells : nodes;
       const bool is_requested = context.is_requested(name);
-      values.assign(static_cast<std::size_t>(components * rows), 0.0);
+      values.assign(std::size_t(components * rows), 0.0);
       if (is_requested) fields_.push_back({name, location, components, false, rows, values.data()});
       return is_requested;
     };
@@ -50,7 +50,7 @@ class StressFields final : public FieldSource {
   static void find_principal(const std::vector<double>& stress, std::vector<double>& result) {
     for (std::size_t i = 0; 3 * i < result.size(); ++i) {
       const std::array<double, 3> values = principal_stresses(stress.data() + tensor_components * i);
-      std::ranges::copy(values, result.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      std::ranges::copy(values, result.begin() + std::ptrdiff_t(3 * i));
     }
   }
   CellStress stress_of_;

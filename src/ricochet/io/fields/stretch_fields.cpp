@@ -21,7 +21,7 @@ class StretchFields final : public FieldSource {
     for (std::size_t k = 0; k < stretches_.size(); ++k) {
       const std::string name = fmt::format("principal_stretch_{}", k + 1);
       const Index cells = body_.mesh->cell_count();
-      stretches_[k].assign(static_cast<std::size_t>(cells), 1.0);
+      stretches_[k].assign(std::size_t(cells), 1.0);
       if (context.is_requested(name))
         fields_.push_back({name, FieldLocation::cells, 1, false, cells, stretches_[k].data()});
     }
@@ -40,7 +40,7 @@ class StretchFields final : public FieldSource {
           cells_->cell_strain(block, local, first + local, state.displacement, strain.data());
           const std::array<double, 3> values = principal_stresses(strain.data());
           for (std::size_t k = 0; k < 3; ++k)
-            stretches_[k][static_cast<std::size_t>(first + local)] = std::sqrt(1.0 + 2.0 * values[k]);
+            stretches_[k][std::size_t(first + local)] = std::sqrt(1.0 + 2.0 * values[k]);
         }
       });
       first += count;

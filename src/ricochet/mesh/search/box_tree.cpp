@@ -9,18 +9,18 @@ constexpr int things_of_leaf = 4;
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
   std::iota(order_.begin(), order_.end(), 0);
-  build(boxes, 0, static_cast<int>(order_.size()));
+  build(boxes, 0, int(order_.size()));
   refit(boxes);
 }
 
 /// Builds a subtree and returns the number of its root.
 int BoxTree::build(const std::vector<Box>& boxes, int first, int last) {
-  const int number = static_cast<int>(nodes_.size());
+  const int number = int(nodes_.size());
   nodes_.push_back({{}, first, last - first, 0});
   if (last - first <= things_of_leaf) return number;
-  const auto middle_of = [&](int thing) -> Eigen::Vector3d { return boxes[static_cast<std::size_t>(thing)].center(); };
+  const auto middle_of = [&](int thing) -> Eigen::Vector3d { return boxes[std::size_t(thing)].center(); };
   Box middles;
-  for (int i = first; i < last; ++i) middles.extend(middle_of(order_[static_cast<std::size_t>(i)]));
+  for (int i = first; i < last; ++i) middles.extend(middle_of(order_[std::size_t(i)]));
   Eigen::Index axis = 0;
   middles.sizes().maxCoeff(&axis);
   const int half = (first + last) / 2;
@@ -28,10 +28,10 @@ int BoxTree::build(const std::vector<Box>& boxes, int first, int last) {
     const double left = middle_of(a)[axis], right = middle_of(b)[axis];
     return left != right ? left < right : a < b;
   });
-  nodes_[static_cast<std::size_t>(number)].count = 0;
+  nodes_[std::size_t(number)].count = 0;
   build(boxes, first, half);
   const int second = build(boxes, half, last);
-  nodes_[static_cast<std::size_t>(number)].second = second;
+  nodes_[std::size_t(number)].second = second;
   return number;
 }
 
@@ -40,10 +40,9 @@ void BoxTree::refit(const std::vector<Box>& boxes) {
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
     node.box.setEmpty();
-    if (node.count == 0)
-      node.box.extend(nodes_[number + 1].box).extend(nodes_[static_cast<std::size_t>(node.second)].box);
+    if (node.count == 0) node.box.extend(nodes_[number + 1].box).extend(nodes_[std::size_t(node.second)].box);
     for (int i = node.first; i < node.first + node.count; ++i)
-      node.box.extend(boxes[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
+      node.box.extend(boxes[std::size_t(order_[std::size_t(i)])]);
   }
 }
 

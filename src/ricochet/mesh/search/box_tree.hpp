@@ -42,9 +42,9 @@ class BoxTree {
     std::size_t count = 1;
     while (count > 0) {
       const int number = waiting[--count];
-      const Node& node = nodes_[static_cast<std::size_t>(number)];
+      const Node& node = nodes_[std::size_t(number)];
       if (!may_touch(node.box)) continue;
-      for (int i = node.first; i < node.first + node.count; ++i) visit(order_[static_cast<std::size_t>(i)]);
+      for (int i = node.first; i < node.first + node.count; ++i) visit(order_[std::size_t(i)]);
       if (node.count > 0) continue;
       waiting[count++] = node.second;
       waiting[count++] = number + 1;

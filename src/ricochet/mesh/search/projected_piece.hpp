@@ -31,8 +31,8 @@ struct ProjectedPolygon {
   std::array<PlanePoint, 12> corners;
   int count = 0;
 
-  void add(const PlanePoint& corner) { corners[static_cast<std::size_t>(count++)] = corner; }
-  [[nodiscard]] const PlanePoint& at(int k) const { return corners[static_cast<std::size_t>(k % count)]; }
+  void add(const PlanePoint& corner) { corners[std::size_t(count++)] = corner; }
+  [[nodiscard]] const PlanePoint& at(int k) const { return corners[std::size_t(k % count)]; }
   [[nodiscard]] double area() const;
 };
 

@@ -40,7 +40,7 @@ const CellShapeDescription& describe(CellShape shape) {
     return cell;
   };
   static const std::vector<CellShapeDescription> all{RICOCHET_CELL_SHAPES(RICOCHET_DESCRIBE_SHAPE)};
-  return all[static_cast<std::size_t>(shape)];
+  return all[std::size_t(shape)];
 }
 
 const std::vector<CellShape>& cell_shapes() {
@@ -54,7 +54,7 @@ int dimension(CellShape shape) {
 }
 
 int vertex_count(CellShape shape) {
-  return static_cast<int>(describe(shape).vertices.size());
+  return int(describe(shape).vertices.size());
 }
 
 bool is_simplex(CellShape shape) {
@@ -64,7 +64,7 @@ bool is_simplex(CellShape shape) {
 std::string name(CellShape shape) {
 #define RICOCHET_NAME_SHAPE(shape) #shape,
   static const std::vector<std::string> names{RICOCHET_CELL_SHAPES(RICOCHET_NAME_SHAPE)};
-  return names[static_cast<std::size_t>(shape)];
+  return names[std::size_t(shape)];
 }
 
 std::string plural_name(CellShape shape) {

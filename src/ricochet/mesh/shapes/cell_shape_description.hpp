@@ -101,7 +101,7 @@ class ShapeTable {
     }
   }
   [[nodiscard]] const auto& at(CellShape shape, int degree) const {
-    return entries_[2 * static_cast<std::size_t>(shape) + (degree == 1 ? 0 : 1)];
+    return entries_[2 * std::size_t(shape) + (degree == 1 ? 0 : 1)];
   }
 
  private:

@@ -74,13 +74,13 @@ std::vector<VertexSets> around_diagonal(const std::array<int, 4>& abcd) {
                                       middle_of_edge(a, d)};
   const std::vector<Eigen::Vector3d> vertices = vertices_of_product({3});
   const auto twice = [&vertices](const VertexSet& pair) {
-    return Eigen::Vector3d(vertices[static_cast<std::size_t>(pair[0])] + vertices[static_cast<std::size_t>(pair[1])]);
+    return Eigen::Vector3d(vertices[std::size_t(pair[0])] + vertices[std::size_t(pair[1])]);
   };
   std::vector<VertexSets> result;
   for (std::size_t i = 0; i < 4; ++i) {
     VertexSets child{middle_of_edge(a, b), middle_of_edge(c, d), ring[i], ring[(i + 1) % 4]};
     Eigen::Matrix3d edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = twice(child[static_cast<std::size_t>(k) + 1]) - twice(child[0]);
+    for (int k = 0; k < 3; ++k) edges.col(k) = twice(child[std::size_t(k) + 1]) - twice(child[0]);
     if (edges.determinant() < 0.0) std::swap(child[2], child[3]);
     result.push_back(std::move(child));
   }
@@ -141,8 +141,7 @@ std::vector<Subdivision> subdivisions_of_product(CellShape shape, const std::vec
 /// Simplices along the monotone paths through the vertices of the factors, from the first of each to the last (Kuhn).
 VertexSets simplices_of_product(const std::vector<int>& dimensions) {
   std::vector<std::size_t> steps;  // the factors, each as often as it has steps
-  for (std::size_t k = 0; k < dimensions.size(); ++k)
-    steps.insert(steps.end(), static_cast<std::size_t>(dimensions[k]), k);
+  for (std::size_t k = 0; k < dimensions.size(); ++k) steps.insert(steps.end(), std::size_t(dimensions[k]), k);
   std::vector<int> stride{1};
   for (const int d : dimensions) stride.push_back(stride.back() * (d + 1));
   VertexSets result;

@@ -59,7 +59,7 @@ class Sphere final : public ObstacleShape {
     // Chords whose sagitta is small compared with the body; rings no wider than sectors at the equator.
     const double widest = in_plane ? 0.1 : 2.0 * std::numbers::pi / sectors;
     const double chord = std::min(std::sqrt(0.04 * radius / radius_), widest);
-    const int pieces = std::clamp(static_cast<int>(std::ceil(angle / chord)), 8, in_plane ? 256 : 32);
+    const int pieces = std::clamp(int(std::ceil(angle / chord)), 8, in_plane ? 256 : 32);
     return in_plane ? arc(towards, angle, pieces) : cap(towards, angle, pieces);
   }
 
@@ -68,7 +68,7 @@ class Sphere final : public ObstacleShape {
     const Eigen::Vector2d middle = centre_;
     ObstacleSurface result{Points(2, 2 * pieces + 1), {}};
     for (int k = 0; k <= 2 * pieces; ++k) {
-      const double rotation = -sign_ * angle * (static_cast<double>(k) / pieces - 1.0);
+      const double rotation = -sign_ * angle * (double(k) / pieces - 1.0);
       result.points.col(k) = middle + radius_ * (Eigen::Rotation2Dd(rotation) * towards);
       if (k > 0) result.cells.insert(result.cells.end(), {k - 1, k});
     }

@@ -148,25 +148,24 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
   const auto point_of = [&](int corner) {
     const auto [point, is_new] = number_of.try_emplace(corner, 0);
     if (!is_new) return point->second;
-    const Vector3& at = surface.corners()[static_cast<std::size_t>(corner)];
+    const Vector3& at = surface.corners()[std::size_t(corner)];
     std::array<long, 3> key{corner, -1, -1};
     if (width > 0.0) {
-      for (std::size_t k = 0; k < 3; ++k)
-        key[k] = static_cast<long>(std::floor((at - surface.box().min())[static_cast<Index>(k)] / width));
+      for (std::size_t k = 0; k < 3; ++k) key[k] = long(std::floor((at - surface.box().min())[Index(k)] / width));
     }
-    const auto [entry, added] = numbers.try_emplace(key, static_cast<int>(sums.size()));
+    const auto [entry, added] = numbers.try_emplace(key, int(sums.size()));
     if (added) {
       sums.push_back(Vector3::Zero());
       counts.push_back(0);
     }
-    sums[static_cast<std::size_t>(entry->second)] += at;
-    ++counts[static_cast<std::size_t>(entry->second)];
+    sums[std::size_t(entry->second)] += at;
+    ++counts[std::size_t(entry->second)];
     return point->second = entry->second;
   };
   ObstacleSurface result;
   std::map<std::array<int, 3>, char> shown;
   for (const int facet : facets) {
-    std::array<int, 3> own = surface.facets()[static_cast<std::size_t>(facet)];
+    std::array<int, 3> own = surface.facets()[std::size_t(facet)];
     for (int& corner : own) corner = point_of(corner);
     if (surface.in_space() && (own[1] == own[2] || own[2] == own[0])) continue;
     if (own[0] == own[1]) continue;
@@ -178,9 +177,8 @@ ObstacleSurface picture_of(const RigidSurface& surface, const std::vector<int>& 
     if (surface.in_space()) result.cells.push_back(own[2]);
   }
   const Index d = surface.in_space() ? 3 : 2;
-  result.points.resize(d, static_cast<Index>(sums.size()));
-  for (std::size_t k = 0; k < sums.size(); ++k)
-    result.points.col(static_cast<Index>(k)) = (sums[k] / counts[k]).head(d);
+  result.points.resize(d, Index(sums.size()));
+  for (std::size_t k = 0; k < sums.size(); ++k) result.points.col(Index(k)) = (sums[k] / counts[k]).head(d);
   return result;
 }
 
@@ -200,7 +198,7 @@ ObstacleSurface Surface::surface(const Vector& centre, double radius) const {
   double width = 0.0;
   ObstacleSurface result = picture_of(surface_, shown, width, side_);
   while (result.cells.size() > corners * most_shown) {
-    width = width == 0.0 ? 0.5 * reach / std::sqrt(static_cast<double>(shown.size())) : coarser * width;
+    width = width == 0.0 ? 0.5 * reach / std::sqrt(double(shown.size())) : coarser * width;
     result = picture_of(surface_, shown, width, side_);
   }
   return result;
@@ -254,7 +252,7 @@ ObstacleRegistration surface_obstacle() {
     const std::string& file = parameters.text("file");
     const double scale = parameters.number("scale"), side = obstacle_side(parameters);
     std::string extension = std::filesystem::path(file).extension().string();
-    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    for (char& c : extension) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     RigidSurface surface(extension == ".stl" ? read_stl(file, scale) : read_polygons(file, scale), file);
     if (side < 0.0 && !surface.is_closed()) {
       const Vector3& position = surface.border_position();

@@ -17,10 +17,10 @@ class LevelSet {
       : d_(middle.size()),
         cells_(d_ == 2 ? squares : cubes),
         low_(middle.array() - half_width),
-        width_(2.0 * half_width / static_cast<double>(cells_)) {
+        width_(2.0 * half_width / double(cells_)) {
     const Index wide = cells_ + 1;
-    values_.resize(static_cast<std::size_t>(d_ == 2 ? wide * wide : wide * wide * wide));
-    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = function(position(static_cast<long>(i)));
+    values_.resize(std::size_t(d_ == 2 ? wide * wide : wide * wide * wide));
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = function(position(long(i)));
   }
 
   [[nodiscard]] ObstacleSurface cut() {
@@ -33,8 +33,8 @@ class LevelSet {
         }
       }
     }
-    surface_.points.resize(d_, static_cast<Index>(points_.size()));
-    for (std::size_t k = 0; k < points_.size(); ++k) surface_.points.col(static_cast<Index>(k)) = points_[k];
+    surface_.points.resize(d_, Index(points_.size()));
+    for (std::size_t k = 0; k < points_.size(); ++k) surface_.points.col(Index(k)) = points_[k];
     return surface_;
   }
 
@@ -42,21 +42,21 @@ class LevelSet {
   [[nodiscard]] SpaceVector position(long point) const {
     SpaceVector result = low_;
     const long wide = cells_ + 1;
-    for (Index k = 0; k < d_; ++k, point /= wide) result[k] += width_ * static_cast<double>(point % wide);
+    for (Index k = 0; k < d_; ++k, point /= wide) result[k] += width_ * double(point % wide);
     return result;
   }
-  [[nodiscard]] double value(long point) const { return values_[static_cast<std::size_t>(point)]; }
+  [[nodiscard]] double value(long point) const { return values_[std::size_t(point)]; }
   [[nodiscard]] bool is_inside(long point) const { return value(point) < 0.0; }
   int crossing(long a, long b) {
     if (a > b) std::swap(a, b);
-    const auto [entry, added] = crossings_.try_emplace({a, b}, static_cast<int>(points_.size()));
+    const auto [entry, added] = crossings_.try_emplace({a, b}, int(points_.size()));
     if (added) {
       const double part = value(a) / (value(a) - value(b));
       points_.push_back((1.0 - part) * position(a) + part * position(b));
     }
     return entry->second;
   }
-  [[nodiscard]] const SpaceVector& point(int number) const { return points_[static_cast<std::size_t>(number)]; }
+  [[nodiscard]] const SpaceVector& point(int number) const { return points_[std::size_t(number)]; }
 
   void cut_square(long first, long wide) {
     cut_triangle({first, first + 1, first + wide + 1});

@@ -22,9 +22,9 @@ using Vector3 = Eigen::Vector3d;
 
 /// Angle of a triangle at corner k.
 double angle_at(const std::array<Vector3, 3>& corners, int k) {
-  const Vector3& at = corners[static_cast<std::size_t>(k)];
-  const Vector3 a = corners[static_cast<std::size_t>((k + 1) % 3)] - at;
-  const Vector3 b = corners[static_cast<std::size_t>((k + 2) % 3)] - at;
+  const Vector3& at = corners[std::size_t(k)];
+  const Vector3 a = corners[std::size_t((k + 1) % 3)] - at;
+  const Vector3 b = corners[std::size_t((k + 2) % 3)] - at;
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
@@ -48,7 +48,7 @@ RigidSurface::RigidSurface(const SurfaceFacets& facets, const std::string& name)
 
 /// Merges corners at the same position.
 void RigidSurface::join_corners(const SurfaceFacets& facets) {
-  const auto per_facet = static_cast<std::size_t>(corner_count());
+  const auto per_facet = std::size_t(corner_count());
   std::vector<std::size_t> order(facets.corners.size() * per_facet);
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto at = [&](std::size_t i) -> const Vector3& { return facets.corners[i / per_facet][i % per_facet]; };
@@ -59,7 +59,7 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
   facets_.resize(facets.corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || before(order[i - 1], order[i])) corners_.push_back(at(order[i]));
-    facets_[order[i] / per_facet][order[i] % per_facet] = static_cast<int>(corners_.size()) - 1;
+    facets_[order[i] / per_facet][order[i] % per_facet] = int(corners_.size()) - 1;
   }
   if (in_space_) return;
   for (std::array<int, 3>& facet : facets_) facet[2] = facet[1];
@@ -70,13 +70,13 @@ bool RigidSurface::join_borders() {
   constexpr double near = 1e-6;  // relative to the size of the surface
   std::vector<int> order;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    if (corner_normals_[i].is_border) order.push_back(static_cast<int>(i));
+    if (corner_normals_[i].is_border) order.push_back(int(i));
   }
-  const auto positions = Eigen::Map<const Points>(corners_.front().data(), 3, static_cast<Index>(corners_.size()));
+  const auto positions = Eigen::Map<const Points>(corners_.front().data(), 3, Index(corners_.size()));
   const double reach = near * enclosing_diameter(positions);
   // A direction along which few corners of usual surfaces have equal heights.
   const Vector3 direction = Vector3(0.6182, 0.5432, 0.5681).normalized();
-  const auto at = [&](int corner) -> const Vector3& { return corners_[static_cast<std::size_t>(corner)]; };
+  const auto at = [&](int corner) -> const Vector3& { return corners_[std::size_t(corner)]; };
   const auto height = [&](int corner) { return direction.dot(at(corner)); };
   std::ranges::sort(order, [&](int a, int b) { return std::pair(height(a), a) < std::pair(height(b), b); });
   DisjointSets sets(static_cast<Index>(corners_.size()));
@@ -88,7 +88,7 @@ bool RigidSurface::join_borders() {
     }
   }
   for (std::array<int, 3>& facet : facets_) {
-    for (int& corner : facet) corner = static_cast<int>(sets.root(corner));
+    for (int& corner : facet) corner = int(sets.root(corner));
   }
   return joined_count_ > 0;
 }
@@ -106,7 +106,7 @@ void RigidSurface::find_normals(const std::string& name) {
     normals_[i] = is_flat ? Vector3(Vector3::Zero()) : Vector3(normal / length);
     flat_count_ += is_flat ? 1 : 0;
   }
-  if (flat_count_ == static_cast<long>(facets_.size()))
+  if (flat_count_ == long(facets_.size()))
     throw Error(ErrorKind::invalid_input, fmt::format("{}: no {} has {}", name, in_space_ ? "triangle" : "segment",
                                                       in_space_ ? "an area" : "a length"));
 }
@@ -117,7 +117,7 @@ std::string RigidSurface::position_text(const Vector3& position) const {
 }
 
 std::string RigidSurface::text_of(int facet) const {
-  const auto i = static_cast<std::size_t>(facet);
+  const auto i = std::size_t(facet);
   const Vector3 middle = in_space_ ? Vector3((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3.0)
                                    : Vector3(0.5 * (corner(i, 0) + corner(i, 1)));
   return fmt::format("{} {} at {}", in_space_ ? "triangle" : "segment", facet + 1, position_text(middle));
@@ -128,7 +128,7 @@ std::string RigidSurface::text_of(int facet) const {
 void RigidSurface::check_edge(std::span<const Side> sides, const std::string& name) const {
   if (sides.size() == 1 || (sides.size() == 2 && sides[0].forward != sides[1].forward)) return;
   const auto sorted = [&](const Side& side) {
-    std::array<int, 3> corners = facets_[static_cast<std::size_t>(side.facet)];
+    std::array<int, 3> corners = facets_[std::size_t(side.facet)];
     std::ranges::sort(corners);
     return corners;
   };
@@ -152,7 +152,7 @@ void RigidSurface::check_edge(std::span<const Side> sides, const std::string& na
 }
 
 RigidSurface::Vector3 RigidSurface::middle_of(const Side& side) const {
-  return 0.5 * (corners_[static_cast<std::size_t>(side.low)] + corners_[static_cast<std::size_t>(side.high)]);
+  return 0.5 * (corners_[std::size_t(side.low)] + corners_[std::size_t(side.high)]);
 }
 
 /// Returns the sides sorted by their corners. A facet with two coincident corners contributes none: its other two sides
@@ -163,9 +163,8 @@ std::vector<RigidSurface::Side> RigidSurface::sorted_sides() const {
     const std::array<int, 3>& facet = facets_[i];
     if (facet[0] == facet[1] || (in_space_ && (facet[1] == facet[2] || facet[2] == facet[0]))) continue;
     for (int k = 0; k < corner_count(); ++k) {
-      const int a = facet[static_cast<std::size_t>(k)],
-                b = in_space_ ? facet[static_cast<std::size_t>((k + 1) % 3)] : a;
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(i), k, in_space_ ? a < b : k == 0});
+      const int a = facet[std::size_t(k)], b = in_space_ ? facet[std::size_t((k + 1) % 3)] : a;
+      sides.push_back({std::min(a, b), std::max(a, b), int(i), k, in_space_ ? a < b : k == 0});
     }
   }
   std::ranges::sort(sides, [](const Side& a, const Side& b) {
@@ -188,9 +187,8 @@ void RigidSurface::find_edges(const std::string& name) {
     check_edge(here, name);
     Edge edge;
     for (const Side& side : here) {
-      edge.normal += normals_[static_cast<std::size_t>(side.facet)];
-      edge_of_[static_cast<std::size_t>(side.facet)][static_cast<std::size_t>(side.number)] =
-          static_cast<int>(edges_.size());
+      edge.normal += normals_[std::size_t(side.facet)];
+      edge_of_[std::size_t(side.facet)][std::size_t(side.number)] = int(edges_.size());
     }
     if (edge.normal.norm() > 0.0) edge.normal.normalize();
     edge.is_border = here.size() == 1;
@@ -198,10 +196,10 @@ void RigidSurface::find_edges(const std::string& name) {
       measure_bend(here);
     } else {
       if (border_count_++ == 0) border_position_ = middle_of(here[0]);
-      corner_normals_[static_cast<std::size_t>(here[0].low)].is_border = true;
-      corner_normals_[static_cast<std::size_t>(here[0].high)].is_border = true;
+      corner_normals_[std::size_t(here[0].low)].is_border = true;
+      corner_normals_[std::size_t(here[0].high)].is_border = true;
     }
-    if (!in_space_) corner_normals_[static_cast<std::size_t>(here[0].low)].normal = edge.normal;
+    if (!in_space_) corner_normals_[std::size_t(here[0].low)].normal = edge.normal;
     edges_.push_back(edge);
   }
   if (in_space_) find_corner_normals();
@@ -209,7 +207,7 @@ void RigidSurface::find_edges(const std::string& name) {
 
 /// Accumulates the width of the facets at edges that bend, and the sharpest bend.
 void RigidSurface::measure_bend(std::span<const Side> sides) {
-  const auto facet_of = [&](int k) { return static_cast<std::size_t>(sides[static_cast<std::size_t>(k)].facet); };
+  const auto facet_of = [&](int k) { return std::size_t(sides[std::size_t(k)].facet); };
   const double cosine = normals_[facet_of(0)].dot(normals_[facet_of(1)]);
   constexpr double flat = 1e-12;
   if (cosine > 1.0 - flat || normals_[facet_of(0)].isZero(0.0) || normals_[facet_of(1)].isZero(0.0)) return;
@@ -217,8 +215,7 @@ void RigidSurface::measure_bend(std::span<const Side> sides) {
   for (const int k : {0, 1}) {
     const Vector3 a = corner(facet_of(k), 1) - corner(facet_of(k), 0);
     if (in_space_) {
-      const double edge =
-          (corners_[static_cast<std::size_t>(sides[0].high)] - corners_[static_cast<std::size_t>(sides[0].low)]).norm();
+      const double edge = (corners_[std::size_t(sides[0].high)] - corners_[std::size_t(sides[0].low)]).norm();
       bent_width_ += a.cross(corner(facet_of(k), 2) - corner(facet_of(k), 0)).norm() / edge;
     } else {
       bent_width_ += a.norm();
@@ -237,7 +234,7 @@ double RigidSurface::width_of_smooth() const {
 void RigidSurface::find_corner_normals() {
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     for (int k = 0; k < 3; ++k)
-      corner_normals_[static_cast<std::size_t>(facets_[i][static_cast<std::size_t>(k)])].normal +=
+      corner_normals_[std::size_t(facets_[i][std::size_t(k)])].normal +=
           angle_at({corner(i, 0), corner(i, 1), corner(i, 2)}, k) * normals_[i];
   }
   for (Edge& at : corner_normals_) {
@@ -302,7 +299,7 @@ RigidSurface::Foot RigidSurface::nearest(const Vector3& point) const {
   ClosestPoint closest;
   std::size_t at = 0;
   const auto look_at = [&](int facet) {
-    const auto i = static_cast<std::size_t>(facet);
+    const auto i = std::size_t(facet);
     const ClosestPoint found = in_space_ ? closest_on_triangle(point, corner(i, 0), corner(i, 1), corner(i, 2))
                                          : closest_on_segment(point, corner(i, 0), corner(i, 1));
     const double square = (found.position - point).squaredNorm();
@@ -322,26 +319,24 @@ RigidSurface::Foot RigidSurface::nearest(const Vector3& point) const {
   while (count > 0) {
     const Waiting next = waiting[--count];
     if (!(next.square < least)) continue;
-    const BoxTree::Node& node = nodes[static_cast<std::size_t>(next.node)];
-    for (int i = node.first; i < node.first + node.count; ++i) look_at(tree_.order()[static_cast<std::size_t>(i)]);
+    const BoxTree::Node& node = nodes[std::size_t(next.node)];
+    for (int i = node.first; i < node.first + node.count; ++i) look_at(tree_.order()[std::size_t(i)]);
     if (node.count > 0) continue;
-    const Waiting first{next.node + 1,
-                        nodes[static_cast<std::size_t>(next.node) + 1].box.squaredExteriorDistance(point)};
-    const Waiting second{node.second, nodes[static_cast<std::size_t>(node.second)].box.squaredExteriorDistance(point)};
+    const Waiting first{next.node + 1, nodes[std::size_t(next.node) + 1].box.squaredExteriorDistance(point)};
+    const Waiting second{node.second, nodes[std::size_t(node.second)].box.squaredExteriorDistance(point)};
     const bool in_order = first.square <= second.square;
     waiting[count++] = in_order ? second : first;
     waiting[count++] = in_order ? first : second;
   }
-  const int touched = static_cast<int>(std::ranges::count_if(closest.corners, [](int corner) { return corner >= 0; }));
+  const int touched = int(std::ranges::count_if(closest.corners, [](int corner) { return corner >= 0; }));
   if (touched == corner_count()) return {closest.position, normals_[at], true, false};
   if (touched == 2) {
     const int a = closest.corners[0], b = closest.corners[1];
     const int side = a + 1 == b ? a : 2;
-    const Edge& edge = edges_[static_cast<std::size_t>(edge_of_[at][static_cast<std::size_t>(side)])];
+    const Edge& edge = edges_[std::size_t(edge_of_[at][std::size_t(side)])];
     return {closest.position, edge.normal, false, edge.is_border};
   }
-  const Edge& edge =
-      corner_normals_[static_cast<std::size_t>(facets_[at][static_cast<std::size_t>(closest.corners[0])])];
+  const Edge& edge = corner_normals_[std::size_t(facets_[at][std::size_t(closest.corners[0])])];
   return {closest.position, edge.normal, false, edge.is_border};
 }
 
@@ -358,7 +353,7 @@ RigidSurface::Height RigidSurface::mean_height(const Vector3& point, double radi
   const double square = radius * radius;
   tree_.visit([&](const BoxTree::Box& box) { return box.squaredExteriorDistance(point) < square; },
               [&](int facet) {
-                const auto i = static_cast<std::size_t>(facet);
+                const auto i = std::size_t(facet);
                 if (normals_[i].isZero(0.0)) return;
                 const FacetWeight weight = weight_near(i, point, radius);
                 if (weight.value == 0.0) return;

@@ -93,7 +93,7 @@ class RigidSurface {
   [[nodiscard]] std::string position_text(const Vector3& position) const;
   [[nodiscard]] int corner_count() const { return in_space_ ? 3 : 2; }
   [[nodiscard]] const Vector3& corner(std::size_t facet, int k) const {
-    return corners_[static_cast<std::size_t>(facets_[facet][static_cast<std::size_t>(k)])];
+    return corners_[std::size_t(facets_[facet][std::size_t(k)])];
   }
   [[nodiscard]] FacetWeight weight_near(std::size_t facet, const Vector3& at, double radius) const;
 

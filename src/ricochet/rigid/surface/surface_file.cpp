@@ -94,7 +94,7 @@ SurfaceFacets read_binary(const std::string& file, const std::string& bytes, dou
     std::memcpy(numbers.data(), bytes.data() + binary_header + binary_triangle * i + 12, sizeof numbers);
     for (std::size_t k = 0; k < 9; ++k) {
       if (!std::isfinite(numbers[k])) refuse(file, fmt::format("triangle {} has a corner that is not finite", i + 1));
-      result.corners[i][k / 3][static_cast<Eigen::Index>(k % 3)] = scale * static_cast<double>(numbers[k]);
+      result.corners[i][k / 3][static_cast<Eigen::Index>(k % 3)] = scale * double(numbers[k]);
     }
   }
   return result;

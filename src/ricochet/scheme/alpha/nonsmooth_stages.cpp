@@ -68,7 +68,7 @@ const StageSolution& NonsmoothStages::solve_velocities(const SemidiscreteProblem
   equations_.require_impact_law(problem, base_, end, predicted_velocity, state.velocity, 1.0, restitution_, step,
                                 stage);
   for (Index i = 0; i < position_multiplier_.size(); ++i) {
-    if (position_multiplier_[i] > 0.0) stage.conditions.eligible[static_cast<std::size_t>(i)] = 1;
+    if (position_multiplier_[i] > 0.0) stage.conditions.eligible[std::size_t(i)] = 1;
   }
   return stages.solve(velocity_stage);
 }

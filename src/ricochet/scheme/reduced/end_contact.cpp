@@ -34,7 +34,7 @@ void StickingDrift::update_drift(const SemidiscreteProblem& problem, const Vecto
   if (memory.size() != slip_.size()) memory.setZero(slip_.size());
   const Index tangents = problem.dimension - 1;
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    const bool sticks = state.contact_status[static_cast<std::size_t>(i)] == ContactStatus::stick;
+    const bool sticks = state.contact_status[std::size_t(i)] == ContactStatus::stick;
     for (Index k = i * tangents; k < (i + 1) * tangents; ++k) memory[k] = sticks ? memory[k] + slip_[k] : 0.0;
   }
 }

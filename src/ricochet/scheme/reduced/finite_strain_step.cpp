@@ -32,7 +32,7 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
   velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
-  contact_right_hand_side_.resize(static_cast<Index>(problem.contact_dofs.size()));
+  contact_right_hand_side_.resize(Index(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
 }
 
@@ -41,7 +41,7 @@ std::vector<OperatorCoefficients> FiniteStrainStep::operators(const Semidiscrete
   OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
   midpoint.relaxation_step = step;
   if (!problem.has_contact_dofs()) return {midpoint};
-  midpoint.condensed_operator = static_cast<int>(MasslessContactStep::condensed_stage);
+  midpoint.condensed_operator = int(MasslessContactStep::condensed_stage);
   midpoint.acting = acting;
   OperatorCoefficients contact_operator{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
   contact_operator.relaxation_step = step;
@@ -183,7 +183,7 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
 
 /// Accelerates corrections that hardly shrink: displacements, with the reactions that acted on them.
 void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const State& state) {
-  const auto contact = static_cast<Index>(problem.contact_dofs.size());
+  const auto contact = Index(problem.contact_dofs.size());
   const Index middle = middle_.size(), positions = middle + contact, points = reactions_.normal.size(),
               slips = reactions_.tangential.size();
   image_.resize(positions + 2 * (points + slips));

@@ -68,7 +68,7 @@ void LaggedRows::renew() {
   for (Index i = 0; i < exact->size(); ++i) {
     if (change_of_rows(*lagged_, *exact, i) <= slack) continue;
     copier_.copy(*exact, *lagged_, i);
-    lagged_->revision[static_cast<std::size_t>(i)] = revision_;
+    lagged_->revision[std::size_t(i)] = revision_;
     is_new_ = true;
   }
   copier_.finish(*lagged_);

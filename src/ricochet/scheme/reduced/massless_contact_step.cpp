@@ -16,7 +16,7 @@ namespace ricochet {
 constexpr double same_damping = 1e-12;
 
 void MasslessContactStep::analyse(const SemidiscreteProblem& problem) {
-  const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
+  const auto has_inertia = [&](Index dof) { return problem.is_massless[std::size_t(dof)] == 0; };
   if (std::ranges::any_of(problem.contact_dofs, has_inertia)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes, which it keeps in "
@@ -79,7 +79,7 @@ std::vector<OperatorCoefficients> MasslessContactStep::operators(const Semidiscr
   if (!problem.has_contact_dofs()) return {midpoint};
   const OperatorCoefficients contact_operator{
       .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
-  midpoint.condensed_operator = static_cast<int>(condensed_stage);
+  midpoint.condensed_operator = int(condensed_stage);
   midpoint.condensed_weight = one_damping_ ? 1.0 / (1.0 + 2.0 * eta_ / h) : 1.0;
   midpoint.acting = acting;
   return {contact_operator, midpoint};
@@ -87,13 +87,13 @@ std::vector<OperatorCoefficients> MasslessContactStep::operators(const Semidiscr
 
 void MasslessContactStep::balance(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
   load_ = problem.loads.constant();
-  load_change_.setZero(static_cast<Index>(problem.contact_dofs.size()));
+  load_change_.setZero(Index(problem.contact_dofs.size()));
   if (problem.loads.varies()) {
     problem.loads.varying(state.time, previous_varying_);
     problem.loads.varying(state.time + step_, mean_varying_);
     for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
       const Index dof = problem.contact_dofs[i];
-      load_change_[static_cast<Index>(i)] = mean_varying_[dof] - previous_varying_[dof];
+      load_change_[Index(i)] = mean_varying_[dof] - previous_varying_[dof];
     }
     mean_varying_ = 0.5 * (previous_varying_ + mean_varying_);  // the mean, from now on
     load_ += mean_varying_;
@@ -109,7 +109,7 @@ void MasslessContactStep::find_residual(const SemidiscreteProblem& problem, cons
   stiffness_.multiply(state.velocity, residual_);
   residual_ *= 0.5 * step_;
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-    const auto at = static_cast<Index>(i);
+    const auto at = Index(i);
     const Index dof = problem.contact_dofs[i];
     residual_[at] += load_[dof] - 0.5 * load_change_[at] - equations_.internal_force()[dof];
   }
@@ -119,7 +119,7 @@ void MasslessContactStep::set_contact_force(const SemidiscreteProblem& problem, 
   if (stage.right_hand_side.force.size() != problem.dof_count())
     stage.right_hand_side.force.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i)
-    stage.right_hand_side.force[problem.contact_dofs[i]] = force[static_cast<Index>(i)];
+    stage.right_hand_side.force[problem.contact_dofs[i]] = force[Index(i)];
   stage.right_hand_side.prescribed.setZero(problem.supports.size());
 }
 
@@ -128,7 +128,7 @@ const Vector& MasslessContactStep::solve_contact_nodes(const SemidiscreteProblem
   Stage& stage = stages.stage(condensed_stage);
   set_contact_force(problem, right_hand_side, stage);
   stage.motion.reset();
-  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  stage.conditions.eligible.assign(std::size_t(problem.contact.size()), 0);
   return stages.solve(condensed_stage).increment;
 }
 
@@ -221,7 +221,7 @@ MasslessContactStep::ContactNodeWork MasslessContactStep::contact_node_work(cons
   rows.add_force(normal_, tangential_, excess_reaction_force_);
   ContactNodeWork work{0.0, 0.0};
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-    const auto at = static_cast<Index>(i);
+    const auto at = Index(i);
     static_increment_[at] = factor * solved[problem.contact_dofs[i]];
     work.reactions += static_increment_[at] * (excess_reaction_force_[problem.contact_dofs[i]] + 0.5 * residual_[at]);
     work.load += 0.5 * static_increment_[at] * load_change_[at];
@@ -237,7 +237,7 @@ double MasslessContactStep::load_work_of_mean(const SemidiscreteProblem& problem
   const Vector& shift = solve_contact_nodes(problem, load_change_, stages);
   double of_reactions = 0.0, of_change = 0.0;
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-    const auto at = static_cast<Index>(i);
+    const auto at = Index(i);
     const Index dof = problem.contact_dofs[i];
     of_reactions += shift[dof] * (excess_reaction_force_[dof] + 0.5 * residual_[at]);
     of_change += 0.5 * shift[dof] * load_change_[at];

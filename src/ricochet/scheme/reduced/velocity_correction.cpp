@@ -56,21 +56,19 @@ void VelocityCorrection::find_relative(const Vector& velocity, const Vector& dis
   const Index d = problem_.dimension;
   const int modes = mode_count();
   positions_ = problem_.nodes + displacement.reshaped(d, problem_.nodes.cols());
-  Points centres = Points::Zero(d, static_cast<Index>(bodies_.count()));
+  Points centres = Points::Zero(d, Index(bodies_.count()));
   Vector sizes = Vector::Zero(centres.cols());
   const auto visit = [&](const auto& work) {
     for (Index node = 0; node < positions_.cols(); ++node) {
       const int body = bodies_.body_of_node(node);
-      if (body >= 0) work(node, static_cast<std::size_t>(body));
+      if (body >= 0) work(node, std::size_t(body));
     }
   };
   visit([&](Index node, std::size_t body) {
-    centres.col(static_cast<Index>(body)) += positions_.col(node);
-    sizes[static_cast<Index>(body)] += 1.0;
+    centres.col(Index(body)) += positions_.col(node);
+    sizes[Index(body)] += 1.0;
   });
-  visit([&](Index node, std::size_t body) {
-    positions_.col(node) -= centres.col(static_cast<Index>(body)) / sizes[static_cast<Index>(body)];
-  });
+  visit([&](Index node, std::size_t body) { positions_.col(node) -= centres.col(Index(body)) / sizes[Index(body)]; });
 
   value_ = velocity;
   mask(value_);

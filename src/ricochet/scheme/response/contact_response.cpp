@@ -13,7 +13,7 @@ const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const
   Stage& stage = stages.stage(number);
   stage.rows->add_force(normal, Vector(), stage.right_hand_side.force);
   stage.motion.reset();
-  stage.conditions.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  stage.conditions.eligible.assign(std::size_t(problem.contact.size()), 0);
   stage.conditions.gap.offset.setZero(problem.contact.size());
   stage.conditions.gap.rounding.setZero(problem.contact.size());
   stage.conditions.gap.factor = 1.0;
@@ -28,7 +28,7 @@ void warn_of_dense_response(const std::string& scheme, Index rows) {
       fmt::format("scheme \"{}\" stores a dense matrix of {} for each step length, {:.2g} GB, with one solve per row: "
                   "it is intended for a few hundred contact points; name only facets that may touch in the contact "
                   "group, or use scheme \"reduced-kane\"",
-                  scheme, counted(rows, "row"), 8e-9 * static_cast<double>(rows) * static_cast<double>(rows)));
+                  scheme, counted(rows, "row"), 8e-9 * double(rows) * double(rows)));
 }
 
 Vector point_stiffness(const SemidiscreteProblem& problem) {
@@ -47,7 +47,7 @@ Vector point_stiffness(const SemidiscreteProblem& problem) {
 
 const Vector& ContactResponse::column(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
                                       StageSolve& stages) {
-  Vector& column = columns_[static_cast<std::size_t>(point)];
+  Vector& column = columns_[std::size_t(point)];
   if (column.size() > 0) return column;
   unloaded_stage(problem, number_, stages);
   unit_.setZero(problem.contact.size());
@@ -59,14 +59,14 @@ const Vector& ContactResponse::column(const SemidiscreteProblem& problem, const 
 const Matrix& ContactResponse::among(const SemidiscreteProblem& problem, const ContactRows& rows,
                                      const std::vector<Index>& points, StageSolve& stages) {
   if (revision_ != rows.revision || columns_.empty()) {
-    columns_.assign(static_cast<std::size_t>(problem.contact.size()), Vector());
+    columns_.assign(std::size_t(problem.contact.size()), Vector());
     revision_ = rows.revision;
   }
-  const auto count = static_cast<Index>(points.size());
+  const auto count = Index(points.size());
   among_.resize(count, count);
   for (Index j = 0; j < count; ++j) {
-    const Vector& whole = column(problem, rows, points[static_cast<std::size_t>(j)], stages);
-    for (Index i = 0; i < count; ++i) among_(i, j) = whole[points[static_cast<std::size_t>(i)]];
+    const Vector& whole = column(problem, rows, points[std::size_t(j)], stages);
+    for (Index i = 0; i < count; ++i) among_(i, j) = whole[points[std::size_t(i)]];
   }
   return among_;
 }

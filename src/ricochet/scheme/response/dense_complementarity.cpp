@@ -13,7 +13,7 @@ namespace {
 Vector solve_on(const Matrix& h, const Vector& b, const std::vector<char>& presses) {
   std::vector<Index> points;
   for (Index i = 0; i < b.size(); ++i) {
-    if (presses[static_cast<std::size_t>(i)] != 0) points.push_back(i);
+    if (presses[std::size_t(i)] != 0) points.push_back(i);
   }
   Vector r = Vector::Zero(b.size());
   if (points.empty()) return r;
@@ -36,8 +36,8 @@ Vector dense_complementarity(const Matrix& h, const Vector& b, const std::vector
     const Vector rounding = 8.0 * std::numeric_limits<double>::epsilon() * (h.cwiseAbs() * r.cwiseAbs() + b.cwiseAbs());
     std::vector<std::size_t> wrong;
     for (Index i = 0; i < b.size(); ++i) {
-      const bool pressing = presses[static_cast<std::size_t>(i)] != 0;
-      if (pressing ? r[i] * h(i, i) < -rounding[i] : y[i] < -rounding[i]) wrong.push_back(static_cast<std::size_t>(i));
+      const bool pressing = presses[std::size_t(i)] != 0;
+      if (pressing ? r[i] * h(i, i) < -rounding[i] : y[i] < -rounding[i]) wrong.push_back(std::size_t(i));
     }
     if (wrong.empty()) return r.cwiseMax(0.0);
     if (wrong.size() < fewest) {

@@ -37,10 +37,9 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
   solution_.increment = solution->increment;
   solution_.support_reaction = solution->support_reaction;
   solution_.normal_reaction = normal_;
-  solution_.contact_status.resize(static_cast<std::size_t>(normal_.size()));
+  solution_.contact_status.resize(std::size_t(normal_.size()));
   for (Index i = 0; i < normal_.size(); ++i)
-    solution_.contact_status[static_cast<std::size_t>(i)] =
-        normal_[i] > 0.0 ? ContactStatus::slip : ContactStatus::open;
+    solution_.contact_status[std::size_t(i)] = normal_[i] > 0.0 ? ContactStatus::slip : ContactStatus::open;
   advance_state(problem, stage, solution_, state, increment);
   problem.gaps(state.displacement, end, gap_);
   corrections_ = {.numerical_dissipation = lost(state.displacement, gap_)};

@@ -53,10 +53,10 @@ class LaursenLove final : public Kane {
     project_motion(*stage.rows, impulse_.obstacle_increment);
     const ObstacleMotion& obstacle = impulse_.obstacle_increment;
     motion_from_obstacles(*stage.rows, velocity_, obstacle, approach_);
-    const auto count = static_cast<Index>(points_.size());
+    const auto count = Index(points_.size());
     Vector approach(count), lost(count);
     for (Index k = 0; k < count; ++k) {
-      const Index i = points_[static_cast<std::size_t>(k)];
+      const Index i = points_[std::size_t(k)];
       approach[k] = approach_[i];
       lost[k] = solution.normal_reaction[i] * gap_[i];
     }
@@ -64,7 +64,7 @@ class LaursenLove final : public Kane {
     const Vector p = restoring_impulses(response_.among(problem, *stage.rows, points_, stages), approach, lost);
     Vector& force = impulse_.forces.normal_reaction;
     force.setZero(gap_.size());
-    for (Index k = 0; k < count; ++k) force[points_[static_cast<std::size_t>(k)]] = p[k] / h;
+    for (Index k = 0; k < count; ++k) force[points_[std::size_t(k)]] = p[k] / h;
     kick(problem, stages);
   }
 

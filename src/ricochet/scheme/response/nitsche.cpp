@@ -55,9 +55,9 @@ void NitscheLaw::solve(const Points& points, Vector& r, Vector& q) {
   q.noalias() = q_of_stress_ * mean_;
   p_ = points.s - stiffness_.cwiseProduct(points.gap);
   p_.noalias() += p_of_q_ * q;
-  first_.resize(static_cast<std::size_t>(p_.size()));
+  first_.resize(std::size_t(p_.size()));
   for (Index i = 0; i < p_.size(); ++i) {
-    first_[static_cast<std::size_t>(i)] = points.p_before[i] > 0.0 ? 1 : 0;
+    first_[std::size_t(i)] = points.p_before[i] > 0.0 ? 1 : 0;
     if (points.p_before[i] > 0.0) p_[i] += points.p_before[i];
   }
   p_ = p_.cwiseQuotient(stiffness_);

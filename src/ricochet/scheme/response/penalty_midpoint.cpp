@@ -130,7 +130,7 @@ class PenaltyMidpoint final : public ForcedMidpoint {
     while (true) {
       const std::size_t before = points_.size();
       for (Index i = 0; i < gap_.size(); ++i) {
-        const bool is_there = std::binary_search(points_.begin(), points_.begin() + static_cast<long>(before), i);
+        const bool is_there = std::binary_search(points_.begin(), points_.begin() + long(before), i);
         if ((unforced.gap_before[i] < 0.0 || gap_[i] < 0.0) && !is_there) points_.push_back(i);
       }
       if (points_.size() == before) return before > 0;

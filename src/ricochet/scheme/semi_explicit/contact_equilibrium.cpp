@@ -10,13 +10,13 @@ void ContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
   std::vector<char> is_near(static_cast<std::size_t>(dofs), 0);
   for (Index row = 0; row < stiffness_.rows().rows(); ++row) {
     for (SparseRowMatrix::InnerIterator entry(stiffness_.rows(), row); entry; ++entry)
-      is_near[static_cast<std::size_t>(entry.col())] = 1;
+      is_near[std::size_t(entry.col())] = 1;
   }
   contact_node_dofs_ = ricochet::contact_node_dofs(problem);
-  for (const Index dof : contact_node_dofs_) is_near[static_cast<std::size_t>(dof)] = 1;
+  for (const Index dof : contact_node_dofs_) is_near[std::size_t(dof)] = 1;
   near_dofs_.clear();
   for (Index dof = 0; dof < dofs; ++dof) {
-    if (is_near[static_cast<std::size_t>(dof)] != 0) near_dofs_.push_back(dof);
+    if (is_near[std::size_t(dof)] != 0) near_dofs_.push_back(dof);
   }
   for (Vector* values : {&predicted_, &base_, &middle_, &rate_}) values->setZero(dofs);
 }
@@ -27,7 +27,7 @@ void ContactEquilibrium::predict(const SemidiscreteProblem& problem, const State
     predicted_[dof] = step * (state.velocity[dof] + (0.5 * step) * state.acceleration[dof]);
   }
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     predicted_[dof] = supported_next[i] - state.displacement[dof];
   }
   for (const Index dof : contact_node_dofs_) {
@@ -45,7 +45,7 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
     stage.right_hand_side.force.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const Index dof = problem.contact_dofs[i];
-    stage.right_hand_side.force[dof] = load[dof] - force[dof] - row_force_[static_cast<Index>(i)];
+    stage.right_hand_side.force[dof] = load[dof] - force[dof] - row_force_[Index(i)];
   }
   stage.right_hand_side.prescribed.setZero(problem.supports.size());  // prescribed displacements are in the base
   require_no_penetration(problem, base_, state.time + step, stage);

@@ -21,7 +21,7 @@ void ExplicitMotion::predict(const SemidiscreteProblem& problem, double step, co
   increment = step * (state.velocity + (0.5 * step) * state.acceleration);
   const Vector& next = state.memory.at(supported_next);
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     increment[dof] = next[i] - state.displacement[dof];
   }
 }
@@ -33,7 +33,7 @@ void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& corr
   const Vector& next = state.memory.at(supported_next);
   support_increment_.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     support_increment_[i] = next[i] - state.displacement[dof];
   }
   increment.resize(count);
@@ -53,7 +53,7 @@ void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& corr
     u[dof] += correction[dof];
   }
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     u[dof] = next[i];
     du[dof] = support_increment_[i];
   }

@@ -46,8 +46,8 @@ void NonlinearContactEquilibrium::renew_where_slow(const SemidiscreteProblem& pr
                                                    StageSolve& stages) {
   if (!problem.has_contact_dofs() || progress_.iterations() <= renewal_iterations) return;
   double& from = state.memory.at(contact_renewal)[0];
-  if (static_cast<double>(state.step) < from) return;
-  from = static_cast<double>(state.step) + steps_between_renewals;
+  if (double(state.step) < from) return;
+  from = double(state.step) + steps_between_renewals;
   stages.renew_operators(state.displacement, state.displacement);
 }
 
@@ -100,7 +100,7 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
       problem.supports.size());  // supported nodes are at their prescribed displacements
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
   moved_ = false;
-  point_.resize(static_cast<Index>(problem.contact_dofs.size()));
+  point_.resize(Index(problem.contact_dofs.size()));
   image_.resize(point_.size());
   problem.gather_contact(increment, point_);
   evaluate(problem, state, increment, end);

@@ -23,7 +23,7 @@ void require_semi_explicit(const SemidiscreteProblem& problem, const std::string
                             "\"reduced-kane\" or \"newmark\", or a [[traction]], which keeps its direction",
                             scheme));
   }
-  const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
+  const auto has_inertia = [&](Index dof) { return problem.is_massless[std::size_t(dof)] == 0; };
   if (std::ranges::any_of(problem.contact_dofs, has_inertia)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes: their motion follows "

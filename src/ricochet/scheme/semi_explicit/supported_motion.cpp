@@ -6,8 +6,8 @@ void start_supports(const SemidiscreteProblem& problem, const Vector& mass, doub
   Vector& next = state.memory[supported_next];
   problem.supports.values(step, next);
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-    if (problem.is_massless[static_cast<std::size_t>(dof)] != 0) continue;
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
+    if (problem.is_massless[std::size_t(dof)] != 0) continue;
     const double half = (next[i] - state.displacement[dof]) / step;
     const double acceleration = 2.0 * (half - state.velocity[dof]) / step;
     state.forces.support_reaction[i] += mass[dof] * (acceleration - state.acceleration[dof]);
@@ -26,10 +26,10 @@ void SupportedMotion::advance(const SemidiscreteProblem& problem, const Vector& 
   state.forces.rows->add_force(state.forces.normal_reaction, state.forces.tangential_reaction, contact_force_);
   state.forces.support_reaction.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     const double before = increment[dof] / step;
     const double after = (next[i] - state.displacement[dof]) / step;
-    const bool massless = problem.is_massless[static_cast<std::size_t>(dof)] != 0;
+    const bool massless = problem.is_massless[std::size_t(dof)] != 0;
     state.acceleration[dof] = massless ? 0.0 : (after - before) / step;
     state.velocity[dof] = 0.5 * (before + after);
     state.forces.support_reaction[i] =

@@ -94,7 +94,7 @@ void TrackedCriticalStep::store(double critical, State& state) {
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[last_found] = critical;
   smallest_ = numbers[smallest_found] = std::min(numbers[smallest_found], critical);
-  numbers[found_at] = static_cast<double>(state.step);
+  numbers[found_at] = double(state.step);
   state.memory[critical_displacement] = state.displacement;
 }
 
@@ -139,10 +139,10 @@ double TrackedCriticalStep::change_since(const SemidiscreteProblem& problem, con
       return *this;
     }
   };
-  const Largest largest = parallel_sum<Largest>(static_cast<Index>(pairs_.size()), [&](Index begin, Index end) {
+  const Largest largest = parallel_sum<Largest>(Index(pairs_.size()), [&](Index begin, Index end) {
     Largest part;
     for (Index i = begin; i < end; ++i) {
-      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      const Pair& pair = pairs_[std::size_t(i)];
       const Index a = d * pair.first, b = d * pair.second;
       double length = 0.0, change = 0.0;
       for (Index k = 0; k < d; ++k) {
@@ -164,7 +164,7 @@ bool TrackedCriticalStep::is_due(const SemidiscreteProblem& problem, double step
   if (!std::isfinite(numbers[last_found])) return false;  // no dof has both mass and freedom
   const double room = 1.0 - step / numbers[last_found];
   if (change_since(problem, state) > std::clamp(part_of_room * room, min_change, max_change)) return true;
-  if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
+  if (double(state.step) < numbers[found_at] + rest_between) return false;
   const double high = 0.125 * step * step * problem.mass.quadratic_form(state.acceleration);
   return high > high_frequency_part * (0.5 * problem.mass.quadratic_form(state.velocity) + std::abs(energy));
 }
@@ -187,7 +187,7 @@ double TrackedCriticalStep::find(const SemidiscreteProblem& problem, const Vecto
   // Each check has another random part: the next ones find what one misses.
   std::mt19937_64 generator(static_cast<std::uint64_t>(state.step));
   std::normal_distribution<double> normal;
-  const double part = mode.isZero(0.0) ? 1.0 : random_part / std::sqrt(static_cast<double>(mode.size()));
+  const double part = mode.isZero(0.0) ? 1.0 : random_part / std::sqrt(double(mode.size()));
   for (Index i = 0; i < mode.size(); ++i) mode[i] = inverse_root_[i] > 0.0 ? mode[i] + part * normal(generator) : 0.0;
   const double eigenvalue = improve_largest_eigenvalue(multiply, products, mode);
   return std::ldexp(eigenvalue, -exponent_) / (1.0 - frequency_spread);

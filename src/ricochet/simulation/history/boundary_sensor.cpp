@@ -22,12 +22,12 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
         deforms_(!problem.internal_force->is_linear()),
         about_(about) {
     const Index d = problem.dimension;
-    inside_.assign(static_cast<std::size_t>(problem.nodes.cols()), 0);
-    for (const Index node : nodes) inside_[static_cast<std::size_t>(node)] = 1;
+    inside_.assign(std::size_t(problem.nodes.cols()), 0);
+    for (const Index node : nodes) inside_[std::size_t(node)] = 1;
     for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      const Index dof = problem.supports.dofs()[std::size_t(i)];
       if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // on the axis itself
-      if (inside_[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof});
+      if (inside_[std::size_t(dof / d)] != 0) supports_.push_back({i, dof});
     }
     // The part Σ c_ij of a point's force acts on these nodes, with the moment Σ c_ij X_j × force if positions are those
     // of the reference.
@@ -38,7 +38,7 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
       }
       Point own{point, 0.0, Eigen::Vector3d::Zero()};
       problem.contact.visit_nodes(point, [&](Index node, double weight) {
-        if (inside_[static_cast<std::size_t>(node)] == 0) return;
+        if (inside_[std::size_t(node)] == 0) return;
         own.part += weight;
         own.arm += weight * arm(problem.nodes.col(node));
       });
@@ -107,7 +107,7 @@ class BoundarySensor final : public QuantitySensor<BoundarySensor> {
     const StepForces& forces = state.forces;
     const Index d = problem_.dimension, tangents = d - 1;
     const auto add = [&](Index dof, double value) {
-      if (inside_[static_cast<std::size_t>(dof / d)] == 0) return;
+      if (inside_[std::size_t(dof / d)] == 0) return;
       const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
       force_ += own;
       moment_ += arm_of(dof / d, state).cross(own);

@@ -103,7 +103,7 @@ void append_values(const std::vector<ValuedQuantity<Source>>& quantities, const 
                    std::vector<double>& row, std::size_t bodies = 0) {
   for (const ValuedQuantity<Source>& quantity : quantities) {
     if (!quantity.exists(source)) continue;
-    const auto range = component_range(quantity.components, dimension, static_cast<Index>(bodies));
+    const auto range = component_range(quantity.components, dimension, Index(bodies));
     for (Index k = range.first; k < range.second; ++k) row.push_back(quantity.value(source, k));
   }
 }

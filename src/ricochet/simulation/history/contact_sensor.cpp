@@ -20,7 +20,7 @@ std::vector<PairPoints> points_of(const ContactBoundary& boundary, const std::ve
   for (const SensedPair& pair : pairs) {
     PairPoints& of_pair = result.emplace_back(PairPoints{{}, pair.exchanged});
     for (Index point = 0; point < boundary.size(); ++point) {
-      if (boundary.pair[static_cast<std::size_t>(point)] == pair.number) of_pair.points.push_back(point);
+      if (boundary.pair[std::size_t(point)] == pair.number) of_pair.points.push_back(point);
     }
   }
   return result;
@@ -144,7 +144,7 @@ class ContactSensor final : public QuantitySensor<ContactSensor> {
 std::vector<std::size_t> pairs_of(const ProbeContext& probe) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < probe.entry_of_pair.size(); ++i) {
-    if (static_cast<double>(probe.entry_of_pair[i]) == probe.values.number("contact")) result.push_back(i);
+    if (double(probe.entry_of_pair[i]) == probe.values.number("contact")) result.push_back(i);
   }
   return result;
 }
@@ -166,7 +166,7 @@ std::string describe_contact_forces(const ProbeContext& probe, std::size_t entry
 }
 
 void check_contact(const ProbeContext& probe, ProbeTargets& targets) {
-  const auto entry = static_cast<std::size_t>(probe.values.number("contact"));
+  const auto entry = std::size_t(probe.values.number("contact"));
   const std::size_t count = probe.entry_is_tied.size();
   if (entry >= count) {
     probe.refuse("contact",
@@ -183,7 +183,7 @@ void check_contact(const ProbeContext& probe, ProbeTargets& targets) {
 
 SensorList make_contact_probe(const ProbeContext& probe, const ProbeTargets&) {
   std::vector<SensedPair> sensed;
-  for (const std::size_t i : pairs_of(probe)) sensed.push_back({static_cast<int>(i), probe.pairs[i].exchanged});
+  for (const std::size_t i : pairs_of(probe)) sensed.push_back({int(i), probe.pairs[i].exchanged});
   return {make_contact_sensor(probe.name, probe.problem, sensed)};
 }
 

@@ -34,9 +34,9 @@ std::vector<WeightedNode> weighted_nodes(const Body& body, const std::vector<Cel
     for (; member != members.end() && *member < first + cells[b].size(); ++member) {
       const Index local = *member - first;
       for (Index q = 0; q < integration.rule.weights.size(); ++q) {
-        const double weight =
-            integration.rule.weights[q] * integration.ring(body.mesh->nodes, geometry[b].cell(local), q) *
-            measure(geometry[b].cell(local), integration.geometry.gradients[static_cast<std::size_t>(q)]);
+        const double weight = integration.rule.weights[q] *
+                              integration.ring(body.mesh->nodes, geometry[b].cell(local), q) *
+                              measure(geometry[b].cell(local), integration.geometry.gradients[std::size_t(q)]);
         for (int i = 0; i < cells[b].nodes_per_cell; ++i)
           weights[cells[b].cell(local)[i]] += weight * integration.displacement.values(i, q);
       }

@@ -50,7 +50,7 @@ Columns with_columns_of(const std::vector<std::shared_ptr<Sensor>>& sensors, Col
 std::size_t column_index(const std::vector<std::string>& columns, const std::string& name) {
   const auto found = std::ranges::find(columns, name);
   if (found == columns.end()) throw std::logic_error("no column " + name);
-  return static_cast<std::size_t>(found - columns.begin());
+  return std::size_t(found - columns.begin());
 }
 
 Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
@@ -73,7 +73,7 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const CellR
       columns_(names_of(columns_of(problem, sensors_, bodies_))),
       reductions_(reductions_of(columns_of(problem, sensors_, bodies_))) {
   now_.problem = &problem;
-  now_.body_momenta.resize(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension));
+  now_.body_momenta.resize(bodies_.labels.size() * std::size_t(problem.dimension));
   row_.reserve(columns_.size());
   weigh_nodes();
 }
@@ -159,14 +159,13 @@ void HistoryRecorder::find_momenta(const Vector& velocity) {
 }
 
 void HistoryRecorder::sum_of_bodies(const Vector& values) {
-  const auto d = static_cast<std::size_t>(problem_.dimension);
+  const auto d = std::size_t(problem_.dimension);
   std::ranges::fill(now_.body_momenta, 0.0);
   for (Index node = 0; node < node_weight_.size(); ++node) {
     if (problem_.is_of_free_body(node)) break;
-    double* const own =
-        now_.body_momenta.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
+    double* const own = now_.body_momenta.data() + d * std::size_t(bodies_.of_node[std::size_t(node)]);
     for (std::size_t k = problem_.axisymmetric ? 1 : 0; k < d; ++k)
-      own[k] += node_weight_[node] * values[node * problem_.dimension + static_cast<Index>(k)];
+      own[k] += node_weight_[node] * values[node * problem_.dimension + Index(k)];
   }
 }
 
@@ -182,9 +181,9 @@ void HistoryRecorder::find_contact_state(const Vector& gap) {
   now_.penetration = 0.0;
   for (const double value : gap) now_.penetration = std::max(now_.penetration, -value);  // false for NaN
   if (!problem_.contact.touches_itself) return;
-  is_active_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
+  is_active_.assign(std::size_t(problem_.contact.size()), 1);
   problem_.contact.geometry->deactivate_points(is_active_);
-  now_.left_out = static_cast<double>(std::ranges::count(is_active_, 0));
+  now_.left_out = double(std::ranges::count(is_active_, 0));
 }
 
 Observation Observer::observe(const State& state) {
@@ -208,7 +207,7 @@ SensorRecorder::SensorRecorder(const SemidiscreteProblem& problem, std::vector<s
 }
 
 const std::vector<double>& SensorRecorder::row(const State& state) {
-  row_.assign({static_cast<double>(state.step), state.time});
+  row_.assign({double(state.step), state.time});
   const Observation observation = observer_.observe(state);
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);

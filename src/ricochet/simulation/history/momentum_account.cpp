@@ -155,7 +155,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     contact.moment += left.moment;
   }
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
-    const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem_.supports.dofs()[std::size_t(i)];
     if (!problem_.is_rotation_node(dof / d))
       add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
     magnitudes.force[0] += std::abs(forces.support_reaction[i]);
@@ -180,7 +180,7 @@ SpaceVector MomentumAccount::support_torque(const FreeMotion& body, const StepFo
   const Index first = body.rotation_node() * problem_.dimension;
   force_.setZero(problem_.dof_count());
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
-    const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem_.supports.dofs()[std::size_t(i)];
     if (dof >= first && dof < first + problem_.dimension) force_[dof] = forces.support_reaction[i];
   }
   return body.torque(force_);

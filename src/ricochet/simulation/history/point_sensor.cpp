@@ -30,11 +30,11 @@ class PointSensor final : public QuantitySensor<PointSensor> {
     const ContactBoundary& contact = problem.contact;
     deforms_ = contact.surface->deforms();
     has_gap_ = !std::isnan(contact.node_initial_gap[probe_.contact_node]);
-    const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
-    const Obstacle* const obstacle = problem.obstacles[static_cast<std::size_t>(pair)];
+    const int pair = contact.node_pair[std::size_t(probe_.contact_node)];
+    const Obstacle* const obstacle = problem.obstacles[std::size_t(pair)];
     for (Index point = 0; point < contact.size(); ++point) {
-      const bool is_same = obstacle != nullptr ? problem.obstacle_of_point(point) == obstacle
-                                               : contact.pair[static_cast<std::size_t>(point)] == pair;
+      const bool is_same =
+          obstacle != nullptr ? problem.obstacle_of_point(point) == obstacle : contact.pair[std::size_t(point)] == pair;
       if (!is_same) continue;
       contact.visit_nodes(point, [&](Index node, double weight) {
         if (node == probe_.node) points_.emplace_back(point, weight);
@@ -124,8 +124,8 @@ constexpr double on_segment = 1e-6, coincident = 1e-9;
 /// first of equals.
 Index nearest_contact(const ContactBoundary& contact, Index node) {
   Index nearest = -1;
-  for (Index entry = 0; entry < static_cast<Index>(contact.nodes.size()); ++entry) {
-    if (contact.nodes[static_cast<std::size_t>(entry)] != node) continue;
+  for (Index entry = 0; entry < Index(contact.nodes.size()); ++entry) {
+    if (contact.nodes[std::size_t(entry)] != node) continue;
     // NaN marks an entry that faces nothing; any entry with a gap replaces it.
     if (nearest < 0 || (!std::isnan(contact.node_initial_gap[entry]) &&
                         !(contact.node_initial_gap[entry] >= contact.node_initial_gap[nearest])))
@@ -139,7 +139,7 @@ Index nearest_contact(const ContactBoundary& contact, Index node) {
 Index with_multipliers(const DisplacementSpace& space, const ContactBoundary& contact, Index nearest) {
   const Points& positions = space.nodes;
   const double limit = coincident * enclosing_diameter(positions);
-  const auto number_of = [&space](Index node) { return space.number[static_cast<std::size_t>(node)]; };
+  const auto number_of = [&space](Index node) { return space.number[std::size_t(node)]; };
   bool is_watched = false;
   Index best = -1;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
@@ -155,7 +155,7 @@ Index with_multipliers(const DisplacementSpace& space, const ContactBoundary& co
 bool touches_another_body(const ProbeContext& setting, Index node) {
   const Points& positions = setting.body.space->nodes;
   const double limit = coincident * enclosing_diameter(positions);
-  const auto body_of = [&](Index any) { return setting.bodies.connected.of_node[static_cast<std::size_t>(any)]; };
+  const auto body_of = [&](Index any) { return setting.bodies.connected.of_node[std::size_t(any)]; };
   const std::vector<Index>& nodes = setting.problem.contact.nodes;
   return std::ranges::any_of(nodes, [&](Index other) {
     return (positions.col(other) - positions.col(node)).norm() <= limit && body_of(other) != body_of(node);
@@ -166,14 +166,14 @@ void add_node(const ProbeContext& setting, const std::string& name, Index node, 
               ProbeTargets& targets) {
   const DisplacementSpace& space = *setting.body.space;
   const ContactBoundary& contact = setting.problem.contact;
-  Probe probe{name, node, distance, -1, space.number[static_cast<std::size_t>(node)]};
+  Probe probe{name, node, distance, -1, space.number[std::size_t(node)]};
   const auto entries = std::ranges::count(contact.nodes, node);
   if (entries > 0) probe.contact_node = nearest_contact(contact, node);
   if (entries > 0 && std::isnan(contact.node_initial_gap[probe.contact_node]))
     log::info(fmt::format("probe \"{}\" is at a node that does not face the other body: it has no gap", name));
   if (entries > 1) {
-    const auto first = static_cast<std::size_t>(probe.contact_node);
-    const auto pair = static_cast<std::size_t>(contact.node_pair[first]);
+    const auto first = std::size_t(probe.contact_node);
+    const auto pair = std::size_t(contact.node_pair[first]);
     log::warning(fmt::format(
         "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction refer to {}, the nearest one at "
         "the start",
@@ -189,11 +189,11 @@ void find_point(const ProbeContext& setting, ProbeTargets& targets) {
   const NearestNode nearest = nearest_node(space, setting.vector("at"));
   const Index node = with_multipliers(space, setting.problem.contact, nearest.node);
   if (touches_another_body(setting, node)) {
-    const int body = setting.bodies.connected.of_node[static_cast<std::size_t>(node)];
+    const int body = setting.bodies.connected.of_node[std::size_t(node)];
     log::info(
         fmt::format("probe \"{}\": nodes of two bodies coincide there; it is at the node of {}, which carries "
                     "the multipliers of their contact",
-                    setting.name, setting.bodies.names[static_cast<std::size_t>(body)]));
+                    setting.name, setting.bodies.names[std::size_t(body)]));
   }
   add_node(setting, setting.name, node, nearest.distance, targets);
   const double body_size = enclosing_diameter(space.nodes);
@@ -227,7 +227,7 @@ void find_segment(const ProbeContext& setting, ProbeTargets& targets) {
     const double along = std::clamp(arm.dot(direction), 0.0, length);
     const double distance = (arm - along * direction).norm();
     nearest = std::min(nearest, distance);
-    if (distance <= limit) found.push_back({along, space.number[static_cast<std::size_t>(node)], node, distance});
+    if (distance <= limit) found.push_back({along, space.number[std::size_t(node)], node, distance});
   }
   if (found.empty()) {
     setting.refuse("from",

@@ -43,7 +43,7 @@ struct ProbeContext {
   [[nodiscard]] Vector vector(const std::string& key) const {
     if (!values.has(key)) return Vector::Zero(problem.dimension);
     const std::vector<double>& value = values.vector(key);
-    return Eigen::Map<const Vector>(value.data(), static_cast<Index>(value.size()));
+    return Eigen::Map<const Vector>(value.data(), Index(value.size()));
   }
 };
 

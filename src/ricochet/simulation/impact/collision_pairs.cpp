@@ -27,23 +27,23 @@ void ImpactRecorder::find_collision_pairs(const std::vector<ContactPair>& pairs)
   // Per point between bodies: the fraction of its force that acts on each of the bodies that it faces.
   std::vector<std::map<int, double>> opposite(static_cast<std::size_t>(contact.size()));
   const auto own_body = [&](Index point) { return rigid_.body_of_node(contact.first_own_node(point)); };
-  const auto pair_of = [&](Index point) { return contact.pair[static_cast<std::size_t>(point)]; };
+  const auto pair_of = [&](Index point) { return contact.pair[std::size_t(point)]; };
   BodyOrder order;
   for (Index point = 0; point < contact.size(); ++point) {
     if (!contact.between_bodies(point)) continue;
     const int own = own_body(point);
     contact.visit_nodes(point, [&](Index node, double weight) {
       const int body = rigid_.body_of_node(node);
-      if (body != own) opposite[static_cast<std::size_t>(point)][body] -= weight;
+      if (body != own) opposite[std::size_t(point)][body] -= weight;
     });
     // All surfaces that a point with large sliding can face belong to one body (model_bodies.cpp).
     if (contact.slides(point)) {
-      const int body = rigid_.body_of_node(contact.opposite_node[static_cast<std::size_t>(pair_of(point))]);
-      opposite[static_cast<std::size_t>(point)].clear();
-      if (body != own) opposite[static_cast<std::size_t>(point)][body] = 1.0;
+      const int body = rigid_.body_of_node(contact.opposite_node[std::size_t(pair_of(point))]);
+      opposite[std::size_t(point)].clear();
+      if (body != own) opposite[std::size_t(point)][body] = 1.0;
     }
-    for (const auto& [body, part] : opposite[static_cast<std::size_t>(point)]) {
-      const bool exchanged = pairs[static_cast<std::size_t>(pair_of(point))].exchanged;
+    for (const auto& [body, part] : opposite[std::size_t(point)]) {
+      const bool exchanged = pairs[std::size_t(pair_of(point))].exchanged;
       order.enter(exchanged ? body : own, exchanged ? own : body, pair_of(point));
     }
   }
@@ -52,9 +52,9 @@ void ImpactRecorder::find_collision_pairs(const std::vector<ContactPair>& pairs)
     const int own = own_body(point);
     if (!contact.between_bodies(point)) {
       const int free = free_body_of(point);
-      add_part(point, own, free, free < 0 ? pairs[static_cast<std::size_t>(pair_of(point))].obstacle_name : "", 1.0);
+      add_part(point, own, free, free < 0 ? pairs[std::size_t(pair_of(point))].obstacle_name : "", 1.0);
     }
-    for (const auto& [body, part] : opposite[static_cast<std::size_t>(point)]) {
+    for (const auto& [body, part] : opposite[std::size_t(point)]) {
       if (order.is_first(own, body)) {
         add_part(point, own, body, "", part);
       } else {
@@ -68,11 +68,11 @@ void ImpactRecorder::find_collision_pairs(const std::vector<ContactPair>& pairs)
 void ImpactRecorder::add_collision_pairs_of_ranks(const std::vector<ContactPair>& pairs) {
   if (!problem_.ranks->are_several()) return;
   const ContactBoundary& contact = problem_.contact;
-  for (int body = 0; body < static_cast<int>(rigid_.bodies().size()); ++body) {
+  for (int body = 0; body < int(rigid_.bodies().size()); ++body) {
     for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
       double points = 0.0;
       for (Index point = 0; point < contact.size(); ++point) {
-        const bool is_of_pair = contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(pair);
+        const bool is_of_pair = contact.pair[std::size_t(point)] == int(pair);
         points += is_of_pair && rigid_.body_of_node(contact.first_own_node(point)) == body ? 1.0 : 0.0;
       }
       const long count = std::lround(problem_.ranks->sum(points));
@@ -96,7 +96,7 @@ int ImpactRecorder::free_body_of(Index point) const {
   if (obstacle == nullptr || obstacle->free_motion() == nullptr) return -1;
   const std::size_t before = rigid_.bodies().size() - problem_.free_bodies.size();
   for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k) {
-    if (problem_.free_bodies[k].get() == obstacle->free_motion()) return static_cast<int>(before + k);
+    if (problem_.free_bodies[k].get() == obstacle->free_motion()) return int(before + k);
   }
   return -1;
 }
@@ -105,7 +105,7 @@ void ImpactRecorder::add_part(Index point, int body, int other, const std::strin
   const auto found = std::ranges::find_if(collision_pairs_, [&](const CollisionPair& collision) {
     return collision.body == body && collision.other == other && collision.obstacle == obstacle;
   });
-  parts_.push_back({point, static_cast<std::size_t>(found - collision_pairs_.begin()), part});
+  parts_.push_back({point, std::size_t(found - collision_pairs_.begin()), part});
   if (found == collision_pairs_.end()) {
     collision_pairs_.push_back({body, other, obstacle, 1, false});
   } else if (!problem_.ranks->are_several()) {

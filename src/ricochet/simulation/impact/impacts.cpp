@@ -12,7 +12,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
                                std::vector<double> separation)
     : problem_(problem),
       scheme_(scheme),
-      rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
+      rigid_(problem, std::move(body_of_node), int(separation.size())),
       separation_(std::move(separation)) {
   separation_.resize(rigid_.bodies().size(), 0.0);
   find_collision_pairs(pairs);
@@ -73,7 +73,7 @@ void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
     force = {};
   }
   for (const std::vector<double>& of_rank : problem_.ranks->all_gather(own.written())) {
-    const Vector numbers = Eigen::Map<const Vector>(of_rank.data(), static_cast<Index>(of_rank.size()));
+    const Vector numbers = Eigen::Map<const Vector>(of_rank.data(), Index(of_rank.size()));
     NumberVisitor reads(numbers, "forces");
     for (Force& force : forces) {
       Force part;
@@ -286,13 +286,13 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
     result.obstacle_velocity = interval.travel / interval.pressing;
     result.obstacle_sliding = interval.sliding / interval.pressing;
   }
-  const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(collision.body)];
+  const RigidBody& body = rigid_.bodies()[std::size_t(collision.body)];
   result.mass = body.mass;
   result.held = body.held;
   result.before = interval.before;
   if (result.ended) result.after = interval.after;
   if (collision.other >= 0) {
-    const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(collision.other)];
+    const RigidBody& other = rigid_.bodies()[std::size_t(collision.other)];
     result.other = OtherBody{collision.other, other.mass, interval.other_before, {}, other.held};
     if (result.ended) result.other->after = interval.other_after;
   }

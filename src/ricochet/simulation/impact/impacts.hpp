@@ -55,7 +55,7 @@ class ImpactRecorder {
   /// Number of impacts beyond most_impacts, which are not recorded.
   [[nodiscard]] long left_out() const { return left_out_; }
   [[nodiscard]] const std::vector<RigidBody>& bodies() const { return rigid_.bodies(); }
-  [[nodiscard]] double separation(int body) const { return separation_[static_cast<std::size_t>(body)]; }
+  [[nodiscard]] double separation(int body) const { return separation_[std::size_t(body)]; }
 
  private:
   struct Interval {
@@ -142,7 +142,7 @@ class ImpactRecorder {
   [[nodiscard]] Acting acting_in(std::size_t collision) const;
   void store_velocity(const State& state, Vector& velocity);
   void enter_collision_pair(std::size_t collision, double instant);
-  [[nodiscard]] const RigidMotionState& motion_of(int body) const { return (*motion_)[static_cast<std::size_t>(body)]; }
+  [[nodiscard]] const RigidMotionState& motion_of(int body) const { return (*motion_)[std::size_t(body)]; }
   [[nodiscard]] double separation_at(const Interval& interval) const;
   void release(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);

@@ -11,13 +11,13 @@ namespace ricochet {
 RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> body_of_node, int count)
     : problem_(problem),
       body_of_node_(std::move(body_of_node)),
-      origin_(static_cast<std::size_t>(count), Eigen::Vector3d::Zero()),
-      bodies_(static_cast<std::size_t>(count)),
-      motion_(static_cast<std::size_t>(count)) {
+      origin_(std::size_t(count), Eigen::Vector3d::Zero()),
+      bodies_(std::size_t(count)),
+      motion_(std::size_t(count)) {
   std::vector<double> nodes(static_cast<std::size_t>(count), 0.0);
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     if (!problem.ranks->is_owned(node)) continue;
-    const auto b = static_cast<std::size_t>(this->body_of_node(node));
+    const auto b = std::size_t(this->body_of_node(node));
     origin_[b].head(problem.dimension) += problem.nodes.col(node);
     nodes[b] += 1.0;
   }
@@ -64,12 +64,12 @@ void RigidBodies::find_supported_bodies() {
   if (!problem_.ranks->any(problem_.supports.size() > 0)) return;
   std::vector<std::vector<Index>> members(bodies_.size());
   for (Index node = 0; node < problem_.cell_node_count(); ++node)
-    members[static_cast<std::size_t>(body_of_node(node))].push_back(node);
+    members[std::size_t(body_of_node(node))].push_back(node);
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].held = are_fixed_at_rest(problem_, members[b]);
 }
 
 Eigen::Vector3d RigidBodies::arm(Index node) const {
-  Eigen::Vector3d result = -origin_[static_cast<std::size_t>(body_of_node(node))];
+  Eigen::Vector3d result = -origin_[std::size_t(body_of_node(node))];
   result.head(problem_.dimension) += problem_.nodes.col(node);
   return result;
 }
@@ -87,7 +87,7 @@ void RigidBodies::measure() {
     for (Index node = 0; node < problem_.cell_node_count(); ++node) {
       Eigen::Vector3d own = Eigen::Vector3d::Zero();
       own.head(d) = momentum_.segment(node * d, d);
-      visit(static_cast<std::size_t>(body_of_node(node)), arm(node), own);
+      visit(std::size_t(body_of_node(node)), arm(node), own);
     }
   };
   // A translation along k has the momentum m e_k and the moment m c × e_k, which yields two components of the centre c.
@@ -133,7 +133,7 @@ void RigidBodies::measure_axisymmetric() {
   problem_.mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
   std::vector<double> along(bodies_.size(), 0.0), squared(bodies_.size(), 0.0), across(bodies_.size(), 0.0);
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
-    const auto b = static_cast<std::size_t>(body_of_node(node));
+    const auto b = std::size_t(body_of_node(node));
     bodies_[b].mass += momentum_[node * 2 + 1];
     along[b] += moments[node * 2 + 1];
     across[b] += positions[node * 2] * moments[node * 2];
@@ -154,14 +154,14 @@ void RigidBodies::measure_at(const Vector& displacement) {
   const int d = problem_.dimension;
   position_.resize(problem_.dof_count());
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
-    const auto b = static_cast<std::size_t>(body_of_node(node));
+    const auto b = std::size_t(body_of_node(node));
     position_.segment(node * d, d) = problem_.nodes.col(node) + displacement.segment(node * d, d) - origin_[b].head(d);
   }
   problem_.mass.multiply(position_, weighted_);
   centre_.assign(origin_.size(), Eigen::Vector3d::Zero());
   inertia_.assign(origin_.size(), Eigen::Matrix3d::Zero());
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
-    const auto b = static_cast<std::size_t>(body_of_node(node));
+    const auto b = std::size_t(body_of_node(node));
     centre_[b].head(d) += weighted_.segment(node * d, d);
     inertia_[b].topLeftCorner(d, d) += position_.segment(node * d, d) * weighted_.segment(node * d, d).transpose();
   }
@@ -180,7 +180,7 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
   problem_.mass.multiply(velocity, momentum_);
   for (RigidMotionState& state : motion_) state = {};
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
-    const auto b = static_cast<std::size_t>(body_of_node(node));
+    const auto b = std::size_t(body_of_node(node));
     Eigen::Vector3d own = Eigen::Vector3d::Zero(), from_centre = arm(node) + origin_[b] - bodies_[b].centre;
     own.head(d) = momentum_.segment(node * d, d);
     if (uses_current_positions) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);

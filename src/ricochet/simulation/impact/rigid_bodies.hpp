@@ -15,7 +15,7 @@ class RigidBodies {
   RigidBodies(const SemidiscreteProblem& problem, std::vector<int> body_of_node, int count);
 
   [[nodiscard]] const std::vector<RigidBody>& bodies() const { return bodies_; }
-  [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[std::size_t(node)]; }
   /// Motion of all bodies with this velocity at this displacement. Costs one product with M and one pass; allocates
   /// nothing after the first time. The reference stays valid until the next call.
   /// Spins of the mesh's bodies are about reference positions, at finite strain about current ones.

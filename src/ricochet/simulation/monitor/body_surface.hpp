@@ -55,11 +55,11 @@ class BodySurface {
   [[nodiscard]] bool is_plane() const { return plane_; }
   [[nodiscard]] const std::vector<Corners>& pieces() const { return pieces_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
-  [[nodiscard]] const Eigen::Vector3d& at(int node) const { return positions_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] const Eigen::Vector3d& at(int node) const { return positions_[std::size_t(node)]; }
   /// Pieces around a node.
   [[nodiscard]] std::span<const int> around(int node) const {
-    const int first = first_piece_[static_cast<std::size_t>(node)];
-    return {around_.data() + first, static_cast<std::size_t>(first_piece_[static_cast<std::size_t>(node) + 1] - first)};
+    const int first = first_piece_[std::size_t(node)];
+    return {around_.data() + first, std::size_t(first_piece_[std::size_t(node) + 1] - first)};
   }
   /// Unit normal out of the body; zero for a degenerate piece.
   [[nodiscard]] Eigen::Vector3d normal_of(int piece) const;
@@ -90,16 +90,16 @@ BodySurface::Closest BodySurface::closest_of(const Eigen::Vector3d& point, const
   std::size_t count = 1;
   while (count > 0) {
     const int number = waiting[--count];
-    const BoxTree::Node& box = nodes[static_cast<std::size_t>(number)];
+    const BoxTree::Node& box = nodes[std::size_t(number)];
     if (box.box.squaredExteriorDistance(point) >= best.squared_distance) continue;
     for (int i = box.first; i < box.first + box.count; ++i) {
-      const Closest found = closest_on_piece(point, tree_.order()[static_cast<std::size_t>(i)]);
+      const Closest found = closest_on_piece(point, tree_.order()[std::size_t(i)]);
       if (found.squared_distance < best.squared_distance && accept(found.piece, found.position)) best = found;
     }
     if (box.count > 0) continue;
     // The nearer child is pushed last and therefore visited first.
-    const bool first_is_nearer = nodes[static_cast<std::size_t>(number) + 1].box.squaredExteriorDistance(point) <=
-                                 nodes[static_cast<std::size_t>(box.second)].box.squaredExteriorDistance(point);
+    const bool first_is_nearer = nodes[std::size_t(number) + 1].box.squaredExteriorDistance(point) <=
+                                 nodes[std::size_t(box.second)].box.squaredExteriorDistance(point);
     waiting[count++] = first_is_nearer ? box.second : number + 1;
     waiting[count++] = first_is_nearer ? number + 1 : box.second;
   }

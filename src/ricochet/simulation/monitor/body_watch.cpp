@@ -21,30 +21,30 @@ BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cell
   std::vector<std::vector<CellFacet>> facets(static_cast<std::size_t>(bodies.count));
   for (const CellFacet& facet : boundary) {
     const Index node = cells[facet.block].cell(facet.cell)[0];
-    facets[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].push_back(facet);
+    facets[std::size_t(bodies.of_node[std::size_t(node)])].push_back(facet);
   }
   resolution_ = std::numeric_limits<double>::infinity();
   for (const std::vector<CellFacet>& own : facets) {
     surfaces_.emplace_back(positions, surface_pieces(positions, cells, own));
     const std::vector<Index>& nodes = surfaces_.back().nodes();
-    size_.push_back(size[static_cast<std::size_t>(nodes.front())]);
+    size_.push_back(size[std::size_t(nodes.front())]);
     resolution_ = std::min(resolution_, motion_between_checks * surfaces_.back().edge_length());
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
   }
-  last_displacement_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
+  last_displacement_.setZero(Index(nodes_.size()) * positions.rows());
   set_allowances(node_allowances, bodies);
 }
 
 void BodyWatch::set_allowances(const std::vector<ContactNodeAllowance>& node_allowances,
                                const ConnectedBodies& bodies) {
   for (const ContactNodeAllowance& one : node_allowances) {
-    const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
-    const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
+    const int of = bodies.of_node[std::size_t(one.node)];
+    const std::vector<Index>& nodes = surfaces_[std::size_t(of)].nodes();
     const auto at = std::ranges::lower_bound(nodes, one.node);
     if (at == nodes.end() || *at != one.node) continue;
     std::vector<Allowance>& list = allowances_[{of, one.other}];
     list.resize(nodes.size());
-    Allowance& entry = list[static_cast<std::size_t>(at - nodes.begin())];
+    Allowance& entry = list[std::size_t(at - nodes.begin())];
     if (one.allowance > entry.allowance) entry = {one.allowance, one.contact, one.entry};
   }
 }
@@ -61,7 +61,7 @@ void BodyWatch::check(const Vector& displacement, double time, bool now, const N
   for (BodySurface& surface : surfaces_) surface.move(positions_, displacement);
   gap_ = allowances_.empty() ? nullptr : &gaps();
   double apart = std::numeric_limits<double>::infinity();
-  const int count = static_cast<int>(surfaces_.size());
+  const int count = int(surfaces_.size());
   for (int first = 0; first < count; ++first) {
     for (int second = first + 1; second < count; ++second) {
       const double between = check_pair(first, second, time);
@@ -73,7 +73,7 @@ void BodyWatch::check(const Vector& displacement, double time, bool now, const N
   ++checks_;
   const Index d = positions_.rows();
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    last_displacement_.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes_[i] * d, d);
+    last_displacement_.segment(Index(i) * d, d) = displacement.segment(nodes_[i] * d, d);
   free_way_ = 0.5 * std::max(apart, resolution_);  // both bodies may have moved
 }
 
@@ -83,7 +83,7 @@ bool BodyWatch::is_due(const Vector& displacement) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     double squared = 0.0;
     for (Index k = 0; k < d; ++k) {
-      const double moved = displacement[nodes_[i] * d + k] - last_displacement_[static_cast<Index>(i) * d + k];
+      const double moved = displacement[nodes_[i] * d + k] - last_displacement_[Index(i) * d + k];
       squared += moved * moved;
     }
     if (squared >= limit) return true;
@@ -92,16 +92,16 @@ bool BodyWatch::is_due(const Vector& displacement) const {
 }
 
 double BodyWatch::check_pair(int first, int second, double time) {
-  const Eigen::AlignedBox3d& box = surfaces_[static_cast<std::size_t>(first)].box();
-  const double apart = box.exteriorDistance(surfaces_[static_cast<std::size_t>(second)].box());
+  const Eigen::AlignedBox3d& box = surfaces_[std::size_t(first)].box();
+  const double apart = box.exteriorDistance(surfaces_[std::size_t(second)].box());
   if (apart > 0.0) return apart;
   return std::min(check_nodes(first, second, time), check_nodes(second, first, time));
 }
 
 double BodyWatch::check_nodes(int of, int inside, double time) {
-  const BodySurface& own = surfaces_[static_cast<std::size_t>(of)];
-  const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
-  const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);
+  const BodySurface& own = surfaces_[std::size_t(of)];
+  const BodySurface& other = surfaces_[std::size_t(inside)];
+  const double size = std::min(size_[std::size_t(of)], size_[std::size_t(inside)]);
   double apart = std::numeric_limits<double>::infinity();
   const auto found = allowances_.find({of, inside});
   for (std::size_t i = 0; i < own.nodes().size(); ++i) {

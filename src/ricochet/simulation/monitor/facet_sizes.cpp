@@ -15,20 +15,19 @@ constexpr double half = 0.5;
 
 std::set<int> bodies_of(const Body& body, const std::vector<Index>& facets, const std::vector<int>& body_of_node) {
   std::set<int> result;
-  for (const Index node : facet_nodes(*body.space, facets)) result.insert(body_of_node[static_cast<std::size_t>(node)]);
+  for (const Index node : facet_nodes(*body.space, facets)) result.insert(body_of_node[std::size_t(node)]);
   return result;
 }
 
 }  // namespace
 
 FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets) {
-  const auto count = static_cast<std::size_t>(body.space->node_count());
+  const auto count = std::size_t(body.space->node_count());
   FacetSizes result{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   for (const Index facet : facets) {
     const double size = facet_diameter(*body.mesh, facet);
     for (const Index node : facet_nodes(*body.space, {facet})) {
-      double &smallest = result.smallest[static_cast<std::size_t>(node)],
-             &largest = result.largest[static_cast<std::size_t>(node)];
+      double &smallest = result.smallest[std::size_t(node)], &largest = result.largest[std::size_t(node)];
       smallest = smallest > 0.0 ? std::min(smallest, size) : size;
       largest = std::max(largest, size);
     }
@@ -47,13 +46,13 @@ void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const C
   const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
   std::map<Index, Index> entries;
   for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
-    if (contact.node_pair[entry] == number) entries[contact.nodes[entry]] = static_cast<Index>(entry);
+    if (contact.node_pair[entry] == number) entries[contact.nodes[entry]] = Index(entry);
   }
   const auto add = [&](const std::vector<Index>& facets, const std::set<int>& others) {
     for (const Index node : facet_nodes(*body.space, facets)) {
       const auto found = entries.find(node);
       for (const int other : others) {
-        if (other != body_of_node[static_cast<std::size_t>(node)])
+        if (other != body_of_node[std::size_t(node)])
           result.push_back({node, other, number, found != entries.end() ? found->second : -1, half * size});
       }
     }
@@ -72,24 +71,23 @@ std::vector<ContactNodeAllowance> contact_node_allowances(const Body& body, cons
     const ContactPair& pair = pairs[number];
     if (!pair.has_two_sides()) continue;
     if (pair.large_sliding) {
-      add_sliding_nodes(body, contact, pair, static_cast<int>(number), body_of_node, result);
+      add_sliding_nodes(body, contact, pair, int(number), body_of_node, result);
       continue;
     }
     const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
     const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
     const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
     for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
-      if (contact.node_pair[entry] != static_cast<int>(number)) continue;
-      const auto node = static_cast<std::size_t>(contact.nodes[entry]);
+      if (contact.node_pair[entry] != int(number)) continue;
+      const auto node = std::size_t(contact.nodes[entry]);
       const bool is_opposite = contact.is_opposite[entry] != 0;
       double size = (is_opposite ? opposite : own).largest[node];
       // The conditions may be those of the facets that the node faces, which may be coarser.
-      for (SparseRowMatrix::InnerIterator at(contact.opposite_projection, static_cast<Index>(entry)); at; ++at)
-        size = std::max(size, (is_opposite ? own : opposite).largest[static_cast<std::size_t>(at.col())]);
+      for (SparseRowMatrix::InnerIterator at(contact.opposite_projection, Index(entry)); at; ++at)
+        size = std::max(size, (is_opposite ? own : opposite).largest[std::size_t(at.col())]);
       for (const int other : is_opposite ? own_bodies : opposite_bodies) {
         if (other != body_of_node[node])
-          result.push_back(
-              {contact.nodes[entry], other, static_cast<int>(number), static_cast<Index>(entry), half * size});
+          result.push_back({contact.nodes[entry], other, int(number), Index(entry), half * size});
       }
     }
   }
@@ -103,11 +101,11 @@ Vector slip_limits(const Body& body, const ContactBoundary& contact, const std::
     const FacetSizes own = facet_sizes(body, pairs[number].facets),
                      opposite = facet_sizes(body, pairs[number].opposite_facets);
     for (Index point = 0; point < contact.size(); ++point) {
-      if (contact.pair[static_cast<std::size_t>(point)] != static_cast<int>(number)) continue;
+      if (contact.pair[std::size_t(point)] != int(number)) continue;
       double smallest = std::numeric_limits<double>::infinity();
       contact.visit_nodes(point, [&](Index node, double) {
         for (const FacetSizes* sizes : {&own, &opposite}) {
-          const double size = sizes->smallest[static_cast<std::size_t>(node)];
+          const double size = sizes->smallest[std::size_t(node)];
           if (size > 0.0) smallest = std::min(smallest, size);
         }
       });

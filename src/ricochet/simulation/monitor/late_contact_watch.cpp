@@ -27,9 +27,9 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
     if (candidate.entry >= 0) nodes[candidate.contact].push_back({candidate.entry, allowed * candidate.allowance});
   }
   for (auto& [number, of_contact] : nodes) {
-    Contact watched{static_cast<std::size_t>(number), {}, std::move(of_contact)};
+    Contact watched{std::size_t(number), {}, std::move(of_contact)};
     for (Index point = 0; point < contact.size(); ++point) {
-      if (contact.pair[static_cast<std::size_t>(point)] == number) watched.points.push_back(point);
+      if (contact.pair[std::size_t(point)] == number) watched.points.push_back(point);
     }
     contacts_.push_back(std::move(watched));
   }
@@ -54,7 +54,7 @@ void LateContactWatch::check(const State& state) {
 
 void LateContactWatch::warn(const Contact& contact, Index entry, double time) const {
   const ContactPair& pair = pairs_[contact.number];
-  const Vector position = problem_.nodes.col(problem_.contact.nodes[static_cast<std::size_t>(entry)]);
+  const Vector position = problem_.nodes.col(problem_.contact.nodes[std::size_t(entry)]);
   log::warning(fmt::format(
       "at t = {:.6g} a node at ({:.4g}) (reference position) is {:.3g} inside the other body, but the contact of "
       "\"{}\" and \"{}\" has no force yet: gaps are means over facets of \"{}\", which carries the multipliers, and "
@@ -66,7 +66,7 @@ void LateContactWatch::warn(const Contact& contact, Index entry, double time) co
 void LateContactWatch::persist(const SnapshotVisitor& visit) {
   Snapshot::Integers warned;
   for (const Contact& contact : contacts_) warned.push_back(contact.is_warned ? 1 : 0);
-  visit("told", warned, {0, 1}, static_cast<Index>(warned.size()));
+  visit("told", warned, {0, 1}, Index(warned.size()));
   for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_[i].is_warned = warned[i] != 0;
 }
 

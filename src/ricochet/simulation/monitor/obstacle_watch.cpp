@@ -35,14 +35,14 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
   const ContactBoundary& contact = problem_.contact;
   std::vector<Index> contact_node(static_cast<std::size_t>(problem_.nodes.cols()), -1);
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
-    if (problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])] == obstacles_[obstacle])
-      contact_node[static_cast<std::size_t>(contact.nodes[i])] = static_cast<Index>(i);
+    if (problem_.obstacles[std::size_t(contact.node_pair[i])] == obstacles_[obstacle])
+      contact_node[std::size_t(contact.nodes[i])] = Index(i);
   }
   std::vector<Index>& alone = nodes_[obstacle];
   for (const CellFacet& facet : boundary) {
     RimFacet rim{obstacle, {}, {}};
     for (const Index node : nodes_of_facet(cells, facet)) {
-      const Index entry = contact_node[static_cast<std::size_t>(node)];
+      const Index entry = contact_node[std::size_t(node)];
       if (entry >= 0) rim.inside.push_back(entry);
       if (entry >= 0) continue;
       alone.push_back(node);
@@ -81,18 +81,18 @@ double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displa
 
 void ObstacleWatch::check_start(const State& state) {
   std::vector<char> on_boundary(static_cast<std::size_t>(problem_.nodes.cols()), 0);
-  for (const Index node : problem_.contact.nodes) on_boundary[static_cast<std::size_t>(node)] = 1;
+  for (const Index node : problem_.contact.nodes) on_boundary[std::size_t(node)] = 1;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     for (Index node = 0; node < problem_.nodes.cols(); ++node) {
       if (problem_.is_of_free_body(node)) break;
-      if (on_boundary[static_cast<std::size_t>(node)] == 0) check_node(k, node, state);
+      if (on_boundary[std::size_t(node)] == 0) check_node(k, node, state);
     }
   }
 }
 
 void ObstacleWatch::check_node(std::size_t obstacle, Index node, const State& state) {
   const double depth = -gap(obstacle, node, state.displacement);
-  if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
+  if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[std::size_t(node)] ||
       depth <= posed_[obstacle].gap_rounding(position_))
     return;
   deepest_[obstacle].enter(node, depth, state.time, in_space(position_));
@@ -104,19 +104,19 @@ bool ObstacleWatch::is_warned(int pair) const {
 
 /// Uses the gap at nodes where no contact point is anchored.
 bool ObstacleWatch::is_pressed(std::size_t obstacle, Index contact_node, const State& state) {
-  const Index point = problem_.contact.own_point[static_cast<std::size_t>(contact_node)];
-  if (point >= 0) return state.contact_status[static_cast<std::size_t>(point)] != ContactStatus::open;
-  const Index node = problem_.contact.nodes[static_cast<std::size_t>(contact_node)];
-  return gap(obstacle, node, state.displacement) <= rounding_of_depth * size_[static_cast<std::size_t>(node)];
+  const Index point = problem_.contact.own_point[std::size_t(contact_node)];
+  if (point >= 0) return state.contact_status[std::size_t(point)] != ContactStatus::open;
+  const Index node = problem_.contact.nodes[std::size_t(contact_node)];
+  return gap(obstacle, node, state.displacement) <= rounding_of_depth * size_[std::size_t(node)];
 }
 
 void ObstacleWatch::check_rim(const RimFacet& facet, const State& state) {
   const ContactBoundary& contact = problem_.contact;
   const Vector& u = state.displacement;
   for (const Index entry : facet.inside) {
-    const int pair = contact.node_pair[static_cast<std::size_t>(entry)];
+    const int pair = contact.node_pair[std::size_t(entry)];
     if (is_warned(pair) || !is_pressed(facet.obstacle, entry, state)) continue;
-    const Index node = contact.nodes[static_cast<std::size_t>(entry)];
+    const Index node = contact.nodes[std::size_t(entry)];
     const double here = gap(facet.obstacle, node, u);
     const Eigen::Vector3d from = in_space(position_);
     const bool is_flat = std::ranges::all_of(facet.outside, [&](Index other) {

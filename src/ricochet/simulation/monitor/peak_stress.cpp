@@ -18,16 +18,16 @@ double evaluation_work(const Body& body) {
     if (!is_simplex(block.shape) || geometry > 1 || degree > 1) {
       const QuadratureRule rule = quadrature(block.shape, stiffness_quadrature_degree(block.shape, geometry, degree));
       const double per_point = d == 2 ? 60.0 + 6.0 * block.nodes_per_cell : 100.0 + 30.0 * block.nodes_per_cell;
-      per_cell = static_cast<double>(rule.weights.size()) * per_point;
+      per_cell = double(rule.weights.size()) * per_point;
     }
-    work += per_cell * static_cast<double>(block.size());
+    work += per_cell * double(block.size());
   }
   return work;
 }
 
 double step_work(Index dofs, std::size_t factor_entries) {
   constexpr double per_dof = 20.0;
-  return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(dofs);
+  return 2.0 * double(factor_entries) + per_dof * double(dofs);
 }
 
 PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks, std::unique_ptr<StressRaisers> raisers)
@@ -74,7 +74,7 @@ void PeakStress::evaluate(const State& state) {
 void PeakStress::persist(const SnapshotVisitor& visit) {
   visit.numbers("", evaluations_per_step_, evaluation_budget_, since_evaluation_, hardest_press_, result_.von_mises,
                 result_.time);
-  auto raised_by = static_cast<int>(result_.raised_by);
+  auto raised_by = int(result_.raised_by);
   visit.integers("counts", {}, result_.step, result_.cell, result_.evaluations, result_.states, last_evaluation_,
                  raised_by);
   if (visit.loads() &&

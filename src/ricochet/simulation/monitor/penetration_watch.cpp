@@ -31,7 +31,7 @@ std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& name
 /// Size per node, of the body to which it belongs.
 std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
   std::vector<double> result;
-  for (const int body : bodies.of_node) result.push_back(body < 0 ? 0.0 : size_of_body[static_cast<std::size_t>(body)]);
+  for (const int body : bodies.of_node) result.push_back(body < 0 ? 0.0 : size_of_body[std::size_t(body)]);
   return result;
 }
 
@@ -174,7 +174,7 @@ void PenetrationWatch::warn_of(const BodyPair& pair) const {
 /// With sliding = "large" pairs follow the motion, so that remedies for exceeded small sliding do not help.
 void PenetrationWatch::warn_at_contact(const BodyPair& pair) const {
   const UnwatchedPenetration p = at_contact(pair);
-  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  const ContactPair& contact = pairs_[std::size_t(pair.contact)];
   const std::string why =
       contact.large_sliding
           ? fmt::format(
@@ -194,8 +194,7 @@ std::vector<const ContactPair*> PenetrationWatch::contacts_between(int first, in
   std::vector<const ContactPair*> result;
   const auto contains_node_of = [&](const std::vector<Index>& facets, int body) {
     const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
-    return std::ranges::any_of(
-        nodes, [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
+    return std::ranges::any_of(nodes, [&](Index node) { return bodies_.connected.of_node[std::size_t(node)] == body; });
   };
   for (const ContactPair& pair : pairs_) {
     if (!pair.has_two_sides()) continue;
@@ -250,10 +249,10 @@ std::vector<double> PenetrationWatch::coordinates_of(const Eigen::Vector3d& posi
 
 UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const {
   UnwatchedPenetration result;
-  double size = size_[static_cast<std::size_t>(deepest.node)];
+  double size = size_[std::size_t(deepest.node)];
   for (const int body : bodies) {
-    result.bodies.push_back(bodies_.names[static_cast<std::size_t>(body)]);
-    size = std::min(size, bodies_.sizes[static_cast<std::size_t>(body)]);
+    result.bodies.push_back(bodies_.names[std::size_t(body)]);
+    size = std::min(size, bodies_.sizes[std::size_t(body)]);
   }
   result.depth = deepest.depth;
   result.relative_depth = deepest.depth / size;
@@ -266,14 +265,14 @@ UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, con
 
 UnwatchedPenetration PenetrationWatch::in_obstacle(std::size_t obstacle) const {
   const DeepestPoint& deepest = obstacles_.deepest()[obstacle];
-  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[std::size_t(deepest.node)]});
   result.obstacle = named_[obstacle].name;
   return result;
 }
 
 UnwatchedPenetration PenetrationWatch::through_obstacle(std::size_t obstacle) const {
   const DeepestPoint& deepest = passages_.passages()[obstacle];
-  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[std::size_t(deepest.node)]});
   result.obstacle = named_[obstacle].name;
   result.passed_through = true;
   return result;
@@ -285,13 +284,13 @@ UnwatchedPenetration PenetrationWatch::of_pair(const BodyPair& pair) const {
 
 UnwatchedPenetration PenetrationWatch::at_contact(const BodyPair& pair) const {
   UnwatchedPenetration result = describe(pair.at_contact, {pair.first, pair.second});
-  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  const ContactPair& contact = pairs_[std::size_t(pair.contact)];
   result.contact = {contact.first_group(), contact.second_group()};
   return result;
 }
 
 ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
-  const ContactPair& pair = pairs_[static_cast<std::size_t>(rim.pair)];
+  const ContactPair& pair = pairs_[std::size_t(rim.pair)];
   std::vector<std::string> groups = groups_of(rim.node);
   std::erase(groups, pair.group);
   return {pair.group, pair.obstacle_name, rim.time, coordinates_of(rim.position), groups};
@@ -342,7 +341,7 @@ void PenetrationWatch::persist(const SnapshotVisitor& visit) {
   pairs_warned_.clear();
   contacts_warned_.clear();
   for (const BodyPair& pair : body_watch_.pairs()) {
-    if (pair.at_contact.found() && (pair.contact < 0 || pair.contact >= static_cast<int>(pairs_.size())))
+    if (pair.at_contact.found() && (pair.contact < 0 || pair.contact >= int(pairs_.size())))
       throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
     pairs_warned_.push_back(pair.deepest.found() ? 1 : 0);
     contacts_warned_.push_back(pair.at_contact.found() ? 1 : 0);

@@ -82,7 +82,7 @@ std::optional<SelfOverlap::Found> SelfOverlap::at(int node, double* clearance) c
   }
   const Vector3& position = surface_.at(node);
   const BodySurface::Closest through = surface_.closest_of(position, [&](int piece, const Vector3& closest) {
-    if (has_corner(surface_.pieces()[static_cast<std::size_t>(piece)], node)) return false;
+    if (has_corner(surface_.pieces()[std::size_t(piece)], node)) return false;
     const Vector3 facing = surface_.normal_of(piece);
     return facing.dot(normal) < most_facing && facing.dot(position - closest) <= 0.0;
   });
@@ -128,11 +128,11 @@ void SelfOverlap::trace(const Vector3& from, const Vector3& along, int node, Hit
   std::size_t count = 1;
   while (count > 0) {
     const int number = waiting[--count];
-    const BoxTree::Node& box = nodes[static_cast<std::size_t>(number)];
+    const BoxTree::Node& box = nodes[std::size_t(number)];
     if (!meets_box(box.box, from, along, first.distance + same, same)) continue;
     for (int i = box.first; i < box.first + box.count; ++i) {
-      const int piece = surface_.tree().order()[static_cast<std::size_t>(i)];
-      if (!has_corner(surface_.pieces()[static_cast<std::size_t>(piece)], node)) meet(from, along, piece, same, first);
+      const int piece = surface_.tree().order()[std::size_t(i)];
+      if (!has_corner(surface_.pieces()[std::size_t(piece)], node)) meet(from, along, piece, same, first);
     }
     if (box.count > 0) continue;
     waiting[count++] = box.second;
@@ -142,7 +142,7 @@ void SelfOverlap::trace(const Vector3& from, const Vector3& along, int node, Hit
 
 /// `same`: distance within which positions coincide.
 void SelfOverlap::meet(const Vector3& from, const Vector3& along, int piece, double same, Hit& first) const {
-  const BodySurface::Corners& corners = surface_.pieces()[static_cast<std::size_t>(piece)];
+  const BodySurface::Corners& corners = surface_.pieces()[std::size_t(piece)];
   const Vector3 &a = surface_.at(corners[0]), &b = surface_.at(corners[1]);
   const bool plane = surface_.is_plane();
   const Vector3& c = plane ? b : surface_.at(corners[2]);

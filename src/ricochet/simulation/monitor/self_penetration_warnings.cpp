@@ -47,7 +47,7 @@ std::string PenetrationWatch::contact_with_itself(int body, const UnwatchedPenet
   std::map<std::string, std::size_t> sizes;
   for (const BoundaryGroup& group : boundary_groups_) {
     const bool is_own = std::ranges::all_of(
-        group.nodes, [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
+        group.nodes, [&](Index node) { return bodies_.connected.of_node[std::size_t(node)] == body; });
     if (is_own && !group.name.starts_with('[')) sizes[group.name] = group.nodes.size();  // no union of groups
   }
   const auto smallest = [&](const std::vector<std::string>& names, const std::vector<std::string>& among) {
@@ -78,7 +78,7 @@ void PenetrationWatch::warn_at_contact(const SelfPenetration& found) const {
       "{}; {}",
       words::when(p.time), p.bodies[0], words::depth_text(p), words::coordinates(p.position),
       pair_names(p.contact[0], p.contact[1]),
-      pairs_[static_cast<std::size_t>(found.contact)].large_sliding
+      pairs_[std::size_t(found.contact)].large_sliding
           ? "in one step its parts approached each other by more than the depth to which the contact detects them, or "
             "they were compressed to less than half of their thickness"
           : "the facets that faced each other at the start no longer do so",
@@ -94,7 +94,7 @@ UnwatchedPenetration PenetrationWatch::self_penetration(const SelfPenetration& f
 
 UnwatchedPenetration PenetrationWatch::self_penetration_at_contact(const SelfPenetration& found) const {
   UnwatchedPenetration result = describe(found.at_contact, {found.body});
-  const ContactPair& contact = pairs_[static_cast<std::size_t>(found.contact)];
+  const ContactPair& contact = pairs_[std::size_t(found.contact)];
   result.contact = {contact.first_group(), contact.second_group()};
   return result;
 }

@@ -35,7 +35,7 @@ std::vector<std::vector<CellFacet>> facets_of_bodies(const Body& body, const Bod
     // A facet on the axis is not part of the surface.
     if (is_axisymmetric(body) && std::ranges::all_of(nodes, [&](Index node) { return is_on_axis(body, node); }))
       continue;
-    result[static_cast<std::size_t>(bodies.connected.of_node[static_cast<std::size_t>(nodes[0])])].push_back(facet);
+    result[std::size_t(bodies.connected.of_node[std::size_t(nodes[0])])].push_back(facet);
   }
   return result;
 }
@@ -47,7 +47,7 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
     : positions_(problem.nodes),
       axisymmetric_(problem.axisymmetric),
       work_per_step_(share * step_work),
-      pair_count_(static_cast<int>(pairs.size())) {
+      pair_count_(int(pairs.size())) {
   if (problem.ranks->are_several()) return;
   std::vector<PairNodes> pair_nodes;
   for (const ContactPair& pair : pairs) {
@@ -63,7 +63,7 @@ SelfWatch::SelfWatch(const Body& body, const SemidiscreteProblem& problem, const
   for (std::size_t number = 0; number < facets.size(); ++number) {
     watched_.push_back(watch_body(body, facets[number], bodies.sizes[number]));
     set_contacts(pair_nodes, problem.contact, watched_.back());
-    found_.emplace_back().body = static_cast<int>(number);
+    found_.emplace_back().body = int(number);
     work_budget_ += most_saved * watched_.back().work;
   }
 }
@@ -75,20 +75,19 @@ SelfWatch::WatchedBody SelfWatch::watch_body(const Body& body, const std::vector
   for (const CellFacet& facet : facets) {
     const CellShape shape = facet_shape(cells[facet.block].shape, facet.local);
     watched.facets.push_back({shape, nodes_of_facet(cells, facet)});
-    const int degree = degree_of(shape, static_cast<int>(watched.facets.back().nodes.size()));
+    const int degree = degree_of(shape, int(watched.facets.back().nodes.size()));
     watched.facet_of_piece.insert(watched.facet_of_piece.end(), flat_pieces(shape, degree).size(),
                                   watched.facets.size() - 1);
   }
   const std::size_t count = watched.surface.nodes().size();
   watched.contacts.resize(count);
   const SelfOverlap start(watched.surface, axisymmetric_);
-  for (int node = 0; node < static_cast<int>(count); ++node)
+  for (int node = 0; node < int(count); ++node)
     watched.is_left_out.push_back(start.opening(node) < least_opening ? 1 : 0);
-  watched.at_start.setZero(static_cast<Index>(count));
-  watched.last_displacement.setZero(static_cast<Index>(count) * positions_.rows());
+  watched.at_start.setZero(Index(count));
+  watched.last_displacement.setZero(Index(count) * positions_.rows());
   watched.size = size;
-  watched.work =
-      (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * static_cast<double>(count);
+  watched.work = (positions_.rows() == 2 ? work_per_node_in_plane : work_per_node_in_space) * double(count);
   return watched;
 }
 
@@ -98,7 +97,7 @@ void SelfWatch::set_contacts(const std::vector<PairNodes>& pairs, const ContactB
   const std::vector<Index>& nodes = watched.surface.nodes();
   const auto number_of = [&](Index node) {
     const auto found = std::ranges::lower_bound(nodes, node);
-    return found != nodes.end() && *found == node ? static_cast<std::size_t>(found - nodes.begin()) : nodes.size();
+    return found != nodes.end() && *found == node ? std::size_t(found - nodes.begin()) : nodes.size();
   };
   const auto is_here = [&](Index node) { return number_of(node) < nodes.size(); };
   const auto contact_of = [&](std::size_t at, int pair) {
@@ -116,10 +115,9 @@ void SelfWatch::set_contacts(const std::vector<PairNodes>& pairs, const ContactB
         if (at == nodes.size()) continue;
         if (pair.is_tied) watched.is_left_out[at] = 1;
         if (!is_with_itself) continue;
-        NodeContact* contact = contact_of(at, static_cast<int>(k));
+        NodeContact* contact = contact_of(at, int(k));
         if (contact == nullptr)
-          contact =
-              &watched.contacts[at].emplace_back(NodeContact{static_cast<int>(k), false, false, -1, pair.allowance});
+          contact = &watched.contacts[at].emplace_back(NodeContact{int(k), false, false, -1, pair.allowance});
         (opposite ? contact->opposite : contact->own) = true;
       }
     }
@@ -127,8 +125,7 @@ void SelfWatch::set_contacts(const std::vector<PairNodes>& pairs, const ContactB
   for (std::size_t entry = 0; entry < boundary.nodes.size(); ++entry) {
     const std::size_t at = number_of(boundary.nodes[entry]);
     if (at == nodes.size()) continue;
-    if (NodeContact* const contact = contact_of(at, boundary.node_pair[entry]))
-      contact->entry = static_cast<Index>(entry);
+    if (NodeContact* const contact = contact_of(at, boundary.node_pair[entry])) contact->entry = Index(entry);
   }
 }
 
@@ -153,7 +150,7 @@ void SelfWatch::check(const Vector& displacement, double time, bool now, const N
     const Index d = positions_.rows();
     const std::vector<Index>& nodes = watched.surface.nodes();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      watched.last_displacement.segment(static_cast<Index>(i) * d, d) = displacement.segment(nodes[i] * d, d);
+      watched.last_displacement.segment(Index(i) * d, d) = displacement.segment(nodes[i] * d, d);
   }
   if (any) ++checks_;
 }
@@ -165,12 +162,12 @@ bool SelfWatch::is_due(const WatchedBody& watched, double limit, const Vector& d
   const std::vector<Index>& nodes = watched.surface.nodes();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto moved = [&](std::size_t i, Index k) {
-    return displacement[nodes[i] * d + k] - watched.last_displacement[static_cast<Index>(i) * d + k];
+    return displacement[nodes[i] * d + k] - watched.last_displacement[Index(i) * d + k];
   };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (Index k = 0; k < d; ++k) mean[k] += moved(i, k);
   }
-  mean /= static_cast<double>(nodes.size());
+  mean /= double(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double squared = 0.0;
     for (Index k = 0; k < d; ++k) squared += (moved(i, k) - mean[k]) * (moved(i, k) - mean[k]);
@@ -188,12 +185,12 @@ double SelfWatch::largest_deformation_since(const WatchedBody& watched, const Ve
     result.head(d) = positions_.col(nodes[i]) + of.segment(first, d);
     return result;
   };
-  const auto before = [&](std::size_t i) { return position(i, watched.last_displacement, static_cast<Index>(i) * d); };
+  const auto before = [&](std::size_t i) { return position(i, watched.last_displacement, Index(i) * d); };
   const auto after = [&](std::size_t i) { return position(i, displacement, nodes[i] * d); };
   Vector3 first = Vector3::Zero(), last = Vector3::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    first += before(i) / static_cast<double>(nodes.size());
-    last += after(i) / static_cast<double>(nodes.size());
+    first += before(i) / double(nodes.size());
+    last += after(i) / double(nodes.size());
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) moments += (after(i) - last) * (before(i) - first).transpose();
@@ -227,8 +224,8 @@ void SelfWatch::check_body(std::size_t number, const Vector& displacement, doubl
   watched.clearance = std::numeric_limits<double>::infinity();
   const Vector* gap = nullptr;
   const std::vector<Index>& nodes = watched.surface.nodes();
-  for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {
-    const auto i = static_cast<std::size_t>(node);
+  for (int node = 0; node < int(nodes.size()); ++node) {
+    const auto i = std::size_t(node);
     if (watched.is_left_out[i] != 0) continue;
     double clearance = 0.0;
     const auto found = overlap.at(node, &clearance);
@@ -236,12 +233,11 @@ void SelfWatch::check_body(std::size_t number, const Vector& displacement, doubl
     if (watched.contacts[i].empty()) watched.clearance = std::min(watched.clearance, clearance);
     if (!found) continue;
     const Eigen::Vector3d& position = watched.surface.at(node);
-    const auto piece = static_cast<std::size_t>(found->other_piece);
-    double allowed =
-        rounding_of_depth * watched.size + 2.0 * watched.at_start[node] +
-        16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>() +
-        sagitta_of(watched.facets[watched.facet_of_piece[piece]], displacement) +
-        sagitta_of(watched.facets[watched.facet_of_piece[static_cast<std::size_t>(found->own_piece)]], displacement);
+    const auto piece = std::size_t(found->other_piece);
+    double allowed = rounding_of_depth * watched.size + 2.0 * watched.at_start[node] +
+                     16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>() +
+                     sagitta_of(watched.facets[watched.facet_of_piece[piece]], displacement) +
+                     sagitta_of(watched.facets[watched.facet_of_piece[std::size_t(found->own_piece)]], displacement);
     if (at_start && found->depth <= overlap_of_facets * watched.surface.edge_length()) {
       watched.at_start[node] = found->depth;
       continue;
@@ -265,15 +261,15 @@ void SelfWatch::check_body(std::size_t number, const Vector& displacement, doubl
 }
 
 const SelfWatch::NodeContact* SelfWatch::contact_at(const WatchedBody& watched, int node, int piece) {
-  for (const NodeContact& contact : watched.contacts[static_cast<std::size_t>(node)]) {
+  for (const NodeContact& contact : watched.contacts[std::size_t(node)]) {
     const auto faces = [&](int corner) {
       if (corner < 0) return true;
-      const std::vector<NodeContact>& there = watched.contacts[static_cast<std::size_t>(corner)];
+      const std::vector<NodeContact>& there = watched.contacts[std::size_t(corner)];
       return std::ranges::any_of(there, [&](const NodeContact& other) {
         return other.pair == contact.pair && ((contact.own && other.opposite) || (contact.opposite && other.own));
       });
     };
-    const BodySurface::Corners& corners = watched.surface.pieces()[static_cast<std::size_t>(piece)];
+    const BodySurface::Corners& corners = watched.surface.pieces()[std::size_t(piece)];
     if (std::ranges::all_of(corners, faces)) return &contact;
   }
   return nullptr;
@@ -285,28 +281,28 @@ double SelfWatch::sagitta_of(const Facet& facet, const Vector& displacement) con
   const Index d = positions_.rows();
   const auto at = [&](int k) {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
-    const Index node = facet.nodes[static_cast<std::size_t>(k)];
+    const Index node = facet.nodes[std::size_t(k)];
     result.head(d) = positions_.col(node) + displacement.segment(node * d, d);
     return result;
   };
-  const auto vertices = static_cast<std::size_t>(vertex_count(facet.shape));
+  const auto vertices = std::size_t(vertex_count(facet.shape));
   if (facet.nodes.size() == vertices)
     return is_simplex(facet.shape) ? 0.0 : 0.25 * (at(0) - at(1) - at(2) + at(3)).norm();
   const std::vector<std::vector<int>>& vertices_of = node_vertices(facet.shape, 2);
   double most = 0.0;
   for (std::size_t k = vertices; k < facet.nodes.size(); ++k) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const int v : vertices_of[k]) mean += at(v) / static_cast<double>(vertices_of[k].size());
-    most = std::max(most, (at(static_cast<int>(k)) - mean).norm());
+    for (const int v : vertices_of[k]) mean += at(v) / double(vertices_of[k].size());
+    most = std::max(most, (at(int(k)) - mean).norm());
   }
   return 0.25 * most;
 }
 
 std::array<Index, 3> SelfWatch::nodes_of(const WatchedBody& watched, int piece) const {
   std::array<Index, 3> result{-1, -1, -1};
-  const BodySurface::Corners& corners = watched.surface.pieces()[static_cast<std::size_t>(piece)];
+  const BodySurface::Corners& corners = watched.surface.pieces()[std::size_t(piece)];
   for (std::size_t k = 0; k < 3; ++k) {
-    if (corners[k] >= 0) result[k] = watched.surface.nodes()[static_cast<std::size_t>(corners[k])];
+    if (corners[k] >= 0) result[k] = watched.surface.nodes()[std::size_t(corners[k])];
   }
   return result;
 }

@@ -20,13 +20,13 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     if (!pairs[number].has_two_sides()) continue;
     if (pairs[number].large_sliding) {
-      add_large_sliding_contact(static_cast<int>(number));
+      add_large_sliding_contact(int(number));
       continue;
     }
     Largest largest;
-    largest.contact = static_cast<int>(number);
+    largest.contact = int(number);
     for (Index point = 0; point < contact.size(); ++point) {
-      if (contact.pair[static_cast<std::size_t>(point)] != largest.contact) continue;
+      if (contact.pair[std::size_t(point)] != largest.contact) continue;
       points_.push_back(point);
       at_.push_back(largest_.size());
     }
@@ -40,9 +40,9 @@ void SlidingWatch::add_large_sliding_contact(int number) {
   const Vector stiffness = problem_.internal_force->stiffness_diagonal();
   LargeSlidingContact& sliding = large_sliding_.emplace_back();
   sliding.contact = number;
-  sliding.is_self = pairs_[static_cast<std::size_t>(number)].is_self();
+  sliding.is_self = pairs_[std::size_t(number)].is_self();
   for (Index point = 0; point < contact.size(); ++point) {
-    if (!contact.slides(point) || contact.pair[static_cast<std::size_t>(point)] != number) continue;
+    if (!contact.slides(point) || contact.pair[std::size_t(point)] != number) continue;
     // Moves the nodes of the point along its row and holds all others, including those of the opposite side.
     double sum = 0.0, squares = 0.0;
     contact.visit_own_nodes(point, [&](Index node, double weight) {
@@ -109,7 +109,7 @@ void SlidingWatch::enter(LargeSlidingContact& contact, const State& state) const
 }
 
 void SlidingWatch::warn(const LargeSlidingContact& contact) const {
-  const ContactPair& pair = pairs_[static_cast<std::size_t>(contact.contact)];
+  const ContactPair& pair = pairs_[std::size_t(contact.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} the pairing of {} did not settle: it changed from one iteration of the step to the next and was "
       "frozen. Points are left at {} of up to {:.3g}, for example at ({:.4g}) (reference "
@@ -163,7 +163,7 @@ std::vector<double> SlidingWatch::reference_position(Index point) const {
 }
 
 void SlidingWatch::warn(const Largest& largest) const {
-  const ContactPair& pair = pairs_[static_cast<std::size_t>(largest.contact)];
+  const ContactPair& pair = pairs_[std::size_t(largest.contact)];
   log::warning(fmt::format(
       "at t = {:.6g} the bodies of \"{}\" and \"{}\" have slid along each other by {:.3g} at ({:.4g}) (reference "
       "position), more than half of the smaller facet there ({:.3g}): a contact between bodies keeps the facets paired "

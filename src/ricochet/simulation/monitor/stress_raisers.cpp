@@ -29,13 +29,13 @@ std::string name_of(StressRaiser raiser) {
   static const std::array<std::string, stress_raisers> names{"", "a re-entrant edge of the body",
                                                              "the edge of a support", "a sharp edge in contact",
                                                              "contact with a sharp edge of an obstacle"};
-  return names[static_cast<std::size_t>(raiser)];
+  return names[std::size_t(raiser)];
 }
 
 StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& problem,
                              const std::vector<ContactPair>& pairs, const BodiesOfMesh& bodies)
     : body_(body), problem_(problem), bodies_(bodies) {
-  const auto count = static_cast<std::size_t>(body.space->node_count());
+  const auto count = std::size_t(body.space->node_count());
   of_node_.assign(count, StressRaiser::none);
   touching_.assign(count, 0);
   for (const ContactPair& pair : pairs) {
@@ -43,7 +43,7 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
     const char kind = pair.between_bodies() || pair.friction.any() ? 2 : 1;
     for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
       for (const Index node : facet_nodes(*body.space, *facets))
-        touching_[static_cast<std::size_t>(node)] = std::max(touching_[static_cast<std::size_t>(node)], kind);
+        touching_[std::size_t(node)] = std::max(touching_[std::size_t(node)], kind);
     }
   }
   std::vector<std::vector<Index>> facets;
@@ -51,7 +51,7 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
     facets.push_back(nodes_of_facet(body.space->cells, facet));
     facet_supported_.push_back(supported_components(facets.back()));
     facet_touches_.push_back(std::all_of(facets.back().begin(), facets.back().end(),
-                                         [this](Index node) { return touching_[static_cast<std::size_t>(node)] != 0; })
+                                         [this](Index node) { return touching_[std::size_t(node)] != 0; })
                                  ? 1
                                  : 0);
   }
@@ -74,10 +74,10 @@ StressRaisers::StressRaisers(const Body& body, const SemidiscreteProblem& proble
 /// Returns the components that supports hold at all of the nodes, one bit each.
 unsigned StressRaisers::supported_components(Nodes nodes) const {
   const int d = problem_.dimension;
-  unsigned result = (1U << static_cast<unsigned>(d)) - 1U;
+  unsigned result = (1U << unsigned(d)) - 1U;
   for (const Index node : nodes) {
     for (int k = 0; k < d; ++k) {
-      if (!problem_.supports.contains(node * d + k)) result &= ~(1U << static_cast<unsigned>(k));
+      if (!problem_.supports.contains(node * d + k)) result &= ~(1U << unsigned(k));
     }
   }
   return result;
@@ -87,7 +87,7 @@ StressRaisers::SupportKind StressRaisers::support_of(unsigned components, const 
   if (components == 0) return SupportKind::free;
   int along = 0, across = 0;
   for (int k = 0; k < problem_.dimension; ++k) {
-    if ((components >> static_cast<unsigned>(k) & 1U) == 0) continue;
+    if ((components >> unsigned(k) & 1U) == 0) continue;
     const double part = std::abs(normal[k]);
     if (part <= nearly_across) {
       ++across;
@@ -103,7 +103,7 @@ StressRaisers::SupportKind StressRaisers::support_of(unsigned components, const 
 
 void StressRaisers::mark(const Ridge& ridge, StressRaiser raiser) {
   for (const Index node : ridge.nodes) {
-    StressRaiser& stored = of_node_[static_cast<std::size_t>(node)];
+    StressRaiser& stored = of_node_[std::size_t(node)];
     stored = stronger(stored, raiser);
   }
 }
@@ -122,8 +122,7 @@ void StressRaisers::judge(const Ridge& ridge) {
   } else if (sharp && opening < 0.0) {
     mark(ridge, is_mirrored ? StressRaiser::support_edge : StressRaiser::reentrant_edge);
   } else if (sharp && (facet_touches_[ridge.facets[0]] != 0 || facet_touches_[ridge.facets[1]] != 0)) {
-    for (const Index node : ridge.nodes)
-      contact_edges_.push_back({node, touching_[static_cast<std::size_t>(node)] == 2, {}});
+    for (const Index node : ridge.nodes) contact_edges_.push_back({node, touching_[std::size_t(node)] == 2, {}});
   }
 }
 
@@ -133,9 +132,9 @@ void StressRaisers::reach_neighbours() {
   const std::vector<StressRaiser> own = of_node_;
   each_cell(body_.space->cells, [&](Index, Nodes nodes) {
     StressRaiser first = StressRaiser::none;
-    for (const Index node : nodes) first = stronger(first, own[static_cast<std::size_t>(node)]);
+    for (const Index node : nodes) first = stronger(first, own[std::size_t(node)]);
     for (const Index node : nodes) {
-      StressRaiser& stored = of_node_[static_cast<std::size_t>(node)];
+      StressRaiser& stored = of_node_[std::size_t(node)];
       stored = stronger(stored, first);
     }
   });
@@ -152,7 +151,7 @@ void StressRaisers::find_pressed(const State& state) {
   for (Index point = 0; point < reaction.size(); ++point) {
     if (!(reaction[point] > 0.0)) continue;
     state.forces.rows->visit_normal(point, [&](Index dof, double value) {
-      const auto node = static_cast<std::size_t>(dof / problem_.dimension);
+      const auto node = std::size_t(dof / problem_.dimension);
       if (value != 0.0 && node < pressed_.size()) pressed_[node] = 1;
     });
   }
@@ -170,8 +169,8 @@ bool StressRaisers::is_flush(const State& state, Index node, double size) const 
 /// Considers edges within the size of the cell around its nodes; those of other bodies around its pressed nodes.
 bool StressRaisers::presses_by_edge(const State& state, Nodes nodes, double size) const {
   const std::vector<int>& body_of = bodies_.connected.of_node;
-  const auto body = [&](Index node) { return body_of[static_cast<std::size_t>(node)]; };
-  const auto presses = [this](Index node) { return pressed_[static_cast<std::size_t>(node)] != 0; };
+  const auto body = [&](Index node) { return body_of[std::size_t(node)]; };
+  const auto presses = [this](Index node) { return pressed_[std::size_t(node)] != 0; };
   const auto is_near = [&](Index edge) {
     const bool is_own = body(edge) == body(nodes.front());
     return std::ranges::any_of(nodes, [&](Index node) {
@@ -190,8 +189,8 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
   const int d = problem_.dimension;
   for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
     const Index node = contact.nodes[entry];
-    if (pressed_[static_cast<std::size_t>(node)] == 0 || std::ranges::find(nodes, node) == nodes.end()) continue;
-    const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[entry])];
+    if (pressed_[std::size_t(node)] == 0 || std::ranges::find(nodes, node) == nodes.end()) continue;
+    const Obstacle* const obstacle = problem_.obstacles[std::size_t(contact.node_pair[entry])];
     if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
     const PosedObstacle posed = obstacle->at(state.time, state.displacement);
     const SpaceVector at = position(state, node), normal = posed.normal(at);
@@ -209,9 +208,9 @@ bool StressRaisers::touches_sharp_obstacle(const State& state, Nodes nodes, doub
 StressRaiser StressRaisers::at(const State& state, Index cell) {
   const IndexInBlocks location = locate_cell(*body_.space, cell);
   const CellBlock& block = body_.space->cells[location.block];
-  const Nodes nodes(block.cell(location.local), static_cast<std::size_t>(block.nodes_per_cell));
+  const Nodes nodes(block.cell(location.local), std::size_t(block.nodes_per_cell));
   StressRaiser first = StressRaiser::none;
-  for (const Index node : nodes) first = stronger(first, of_node_[static_cast<std::size_t>(node)]);
+  for (const Index node : nodes) first = stronger(first, of_node_[std::size_t(node)]);
   if (first != StressRaiser::none || state.forces.normal_reaction.size() == 0) return first;
   double size = 0.0;
   for (const Index node : nodes)

@@ -24,11 +24,11 @@ void add_pieces(const Points& positions, const std::vector<CellBlock>& cells, co
                                                        : Eigen::Vector3d(along.cross(at(nodes[2]) - origin));
   double side = 0.0;  // positive if the cell is on the side of the normal
   for (int v = 0; v < vertex_count(block.shape); ++v) side += normal.dot(at(block.cell(facet.cell)[v]) - origin);
-  const int degree = degree_of(shape, static_cast<int>(nodes.size()));
+  const int degree = degree_of(shape, int(nodes.size()));
   for (const FlatPiece& local : flat_pieces(shape, degree)) {
     BodySurface::Piece piece{-1, -1, -1};
     for (std::size_t k = 0; k < 3; ++k) {
-      if (local[k] >= 0) piece[k] = nodes[static_cast<std::size_t>(local[k])];
+      if (local[k] >= 0) piece[k] = nodes[std::size_t(local[k])];
     }
     if (side > 0.0) std::swap(piece[0], piece[1]);
     pieces.push_back(piece);

@@ -11,7 +11,7 @@ double deepest_between(const ObstacleShape& shape, const SpaceVector& from, cons
   constexpr int pieces = 16;
   double depth = 0.0;
   for (int k = 1; k < pieces; ++k) {
-    const double part = static_cast<double>(k) / pieces;
+    const double part = double(k) / pieces;
     depth = std::max(depth, -shape.gap((1.0 - part) * from + part * to));
   }
   return depth;
@@ -51,11 +51,11 @@ void TunnellingWatch::check_obstacle(std::size_t obstacle, const State& state) {
   const Index d = problem_.dimension;
   const bool is_first = previous.gaps.size() == 0;
   if (is_first) {
-    previous.positions.resize(d, static_cast<Index>(nodes_.size()));
+    previous.positions.resize(d, Index(nodes_.size()));
     previous.gaps.resize(previous.positions.cols());
   }
   for (Index i = 0; i < previous.positions.cols(); ++i) {
-    const Index node = nodes_[static_cast<std::size_t>(i)];
+    const Index node = nodes_[std::size_t(i)];
     const SpaceVector position = position_of(node, state);
     const SpaceVector now = posed.pose().to_body_frame(position);
     const SpaceVector before = is_first ? now : SpaceVector(previous.positions.col(i));
@@ -94,7 +94,7 @@ bool TunnellingWatch::any_tunnels(const State& state, double time) const {
     const ObstacleShape& shape = obstacles_[k]->shape();
     const PosedObstacle posed = obstacles_[k]->at(time, state.displacement);
     for (Index i = 0; i < previous.positions.cols(); ++i) {
-      const SpaceVector now = posed.pose().to_body_frame(position_of(nodes_[static_cast<std::size_t>(i)], state));
+      const SpaceVector now = posed.pose().to_body_frame(position_of(nodes_[std::size_t(i)], state));
       const SpaceVector before = previous.positions.col(i);
       if (previous.gaps[i] > (now - before).norm()) continue;
       if (depth_of_passage(shape, before, previous.gaps[i], now, shape.gap(now)) > 0.0) return true;
@@ -107,7 +107,7 @@ void TunnellingWatch::persist(const SnapshotVisitor& visit) {
   for (std::size_t k = 0; k < previous_.size(); ++k) {
     auto& [positions, gaps] = previous_[k];
     const SnapshotVisitor each = visit.part(k);
-    each("gaps", gaps, static_cast<Index>(nodes_.size()), 0);
+    each("gaps", gaps, Index(nodes_.size()), 0);
     each("places", positions, problem_.dimension, gaps.size(), gaps.size());
     each.numbers("passage", passages_[k]);
   }

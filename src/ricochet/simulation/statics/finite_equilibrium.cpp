@@ -115,7 +115,7 @@ class LoadPath {
     stage.linearization.displacement.resize(0);  // one linear stage
     for (Index i = 0; i < problem_.supports.size(); ++i)
       stage.right_hand_side.prescribed[i] =
-          part * supported_[i] - displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+          part * supported_[i] - displacement[problem_.supports.dofs()[std::size_t(i)]];
     require_friction(problem_, displacement - origin_, 1.0, stage);
     return stage;
   }

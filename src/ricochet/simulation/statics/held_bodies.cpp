@@ -19,7 +19,7 @@ Matrix square_of_supported_motions(const SemidiscreteProblem& problem, const std
     sum.head(d) += problem.nodes.col(node);
     sum[d] += 1.0;
   }
-  ranks.sum({sum.data(), static_cast<std::size_t>(sum.size())});
+  ranks.sum({sum.data(), std::size_t(sum.size())});
   const Vector centre = sum.head(d) / sum[d];
   double size = 0.0;
   for (const Index node : members) size = std::max(size, (problem.nodes.col(node) - centre).norm());
@@ -39,7 +39,7 @@ Matrix square_of_supported_motions(const SemidiscreteProblem& problem, const std
       result += row * row.transpose();
     }
   }
-  ranks.sum({result.data(), static_cast<std::size_t>(result.size())});
+  ranks.sum({result.data(), std::size_t(result.size())});
   return result;
 }
 

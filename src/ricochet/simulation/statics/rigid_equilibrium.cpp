@@ -26,11 +26,11 @@ constexpr int column_limit = 2000;
 class FreeMotions {
  public:
   FreeMotions(const SemidiscreteProblem& problem, const std::vector<Index>& members)
-      : problem_(problem), d_(problem.dimension), in_body_(static_cast<std::size_t>(problem.nodes.cols()), 0) {
+      : problem_(problem), d_(problem.dimension), in_body_(std::size_t(problem.nodes.cols()), 0) {
     centre_ = Vector::Zero(d_);
-    for (const Index node : members) centre_ += problem.nodes.col(node) / static_cast<double>(members.size());
+    for (const Index node : members) centre_ += problem.nodes.col(node) / double(members.size());
     for (const Index node : members) {
-      in_body_[static_cast<std::size_t>(node)] = 1;
+      in_body_[std::size_t(node)] = 1;
       size_ = std::max(size_, (problem.nodes.col(node) - centre_).norm());
     }
     const Index all = size_ > 0.0 && !problem.axisymmetric ? (d_ == 2 ? 3 : 6) : d_;
@@ -39,7 +39,7 @@ class FreeMotions {
   }
 
   [[nodiscard]] Index count() const { return modes_.cols(); }
-  [[nodiscard]] bool contains(Index dof) const { return in_body_[static_cast<std::size_t>(dof / d_)] != 0; }
+  [[nodiscard]] bool contains(Index dof) const { return in_body_[std::size_t(dof / d_)] != 0; }
   [[nodiscard]] const Vector& centre() const { return centre_; }
   /// Adds factor × the generalized force of a unit force on this dof; ignores dofs of other bodies.
   void add_force(Index dof, double factor, Vector& force) const {
@@ -174,20 +174,20 @@ class NearestForce {
     points_.push_back(point);
     sizes_.push_back(0.0);
     while (true) {
-      Matrix all(target_.size(), static_cast<Index>(columns_.size()));
-      for (std::size_t k = 0; k < columns_.size(); ++k) all.col(static_cast<Index>(k)) = columns_[k];
+      Matrix all(target_.size(), Index(columns_.size()));
+      for (std::size_t k = 0; k < columns_.size(); ++k) all.col(Index(k)) = columns_[k];
       const Vector unconstrained = PivotedQr(all).solve(target_);
       double part = 1.0;
       for (std::size_t k = 0; k < sizes_.size(); ++k) {
-        const double to = unconstrained[static_cast<Index>(k)];
+        const double to = unconstrained[Index(k)];
         if (to <= 0.0) part = std::min(part, sizes_[k] > 0.0 ? sizes_[k] / (sizes_[k] - to) : 0.0);
       }
       for (std::size_t k = sizes_.size(); k-- > 0;) {
-        const double to = unconstrained[static_cast<Index>(k)];
+        const double to = unconstrained[Index(k)];
         const bool leaves = to <= 0.0 && sizes_[k] + part * (to - sizes_[k]) <= 1e-15 * sizes_[k];
         sizes_[k] += part * (to - sizes_[k]);
         if (!leaves) continue;
-        const auto at = static_cast<std::ptrdiff_t>(k);
+        const auto at = std::ptrdiff_t(k);
         columns_.erase(columns_.begin() + at);
         points_.erase(points_.begin() + at);
         sizes_.erase(sizes_.begin() + at);
@@ -222,7 +222,7 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
     if (!reaches) continue;
     Cone cone{Vector::Zero(motions.count()), Matrix::Zero(motions.count(), tangents), 0.0, false, i};
     rows.visit_normal(i, [&](Index dof, double value) { motions.add_force(dof, value, cone.normal); });
-    if (frictionless.empty() || frictionless[static_cast<std::size_t>(i)] == 0) {
+    if (frictionless.empty() || frictionless[std::size_t(i)] == 0) {
       cone.coefficient = contact.friction_coefficient[i];
       cone.is_rough = cone.coefficient == 0.0 && contact.friction_bound[i] > 0.0;
     }

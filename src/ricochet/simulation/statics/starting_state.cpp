@@ -44,7 +44,7 @@ void apply_supports(const SemidiscreteProblem& problem, double step, State& stat
   double largest_change = 0.0;
   double largest_velocity_change = 0.0;
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     largest_change = std::max(largest_change, std::abs(values[i] - state.displacement[dof]));
     largest_velocity_change = std::max(largest_velocity_change, std::abs(velocities[i] - state.velocity[dof]));
     state.displacement[dof] = values[i];
@@ -110,7 +110,7 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   }
   for (Index i = 0; i < problem.contact.size(); ++i) {
     const bool closed = gap[i] <= problem.contact.rows->gap_rounding[i] || (pressed.size() > 0 && pressed[i] > 0.0);
-    resting[static_cast<std::size_t>(i)] = closed && std::abs(rate[i]) <= rate_rounding[i] ? 1 : 0;
+    resting[std::size_t(i)] = closed && std::abs(rate[i]) <= rate_rounding[i] ? 1 : 0;
   }
   return resting;
 }
@@ -127,7 +127,7 @@ bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vecto
   problem.ranks->accumulate(acceleration);
   bool lacks_inertia = false;
   for (Index dof = 0; dof < mass.size(); ++dof) {
-    if (problem.is_massless[static_cast<std::size_t>(dof)] != 0 || problem.is_tied_dof(dof)) {
+    if (problem.is_massless[std::size_t(dof)] != 0 || problem.is_tied_dof(dof)) {
       acceleration[dof] = 0.0;
     } else if (mass[dof] > 0.0) {
       acceleration[dof] /= mass[dof];
@@ -137,7 +137,7 @@ bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vecto
   }
   if (problem.ranks->any(lacks_inertia)) return false;
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    acceleration[problem.supports.dofs()[static_cast<std::size_t>(i)]] = support_acceleration[i];
+    acceleration[problem.supports.dofs()[std::size_t(i)]] = support_acceleration[i];
   }
   for (const Index dof : problem.massless_dofs) acceleration[dof] = 0.0;
   state.acceleration = std::move(acceleration);
@@ -190,7 +190,7 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
   state.forces.rows->add_force(-state.forces.normal_reaction, -state.forces.tangential_reaction, force);
   state.forces.support_reaction.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
-    state.forces.support_reaction[i] = force[problem.supports.dofs()[static_cast<std::size_t>(i)]];
+    state.forces.support_reaction[i] = force[problem.supports.dofs()[std::size_t(i)]];
   }
 }
 
@@ -218,7 +218,7 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
     double smallest = std::numeric_limits<double>::infinity();
     bool presses = false;
     for (Index i = 0; i < gap.size(); ++i) {
-      if (problem.contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(contact)) continue;
+      if (problem.contact.pair[std::size_t(i)] != int(contact)) continue;
       smallest = std::min(smallest, gap[i]);
       presses = presses || (i < pressed.size() && pressed[i] > 0.0);
     }
@@ -239,8 +239,8 @@ void warn_of_moved_body(const SemidiscreteProblem& problem, const std::vector<In
   const Index d = problem.dimension;
   SpaceVector centre = SpaceVector::Zero(d), motion = SpaceVector::Zero(d);
   for (const Index node : members) {
-    centre += problem.nodes.col(node) / static_cast<double>(members.size());
-    motion += displacement.segment(node * d, d) / static_cast<double>(members.size());
+    centre += problem.nodes.col(node) / double(members.size());
+    motion += displacement.segment(node * d, d) / double(members.size());
   }
   const double length = motion.stableNorm();
   if (!(length > 0.0)) return;
@@ -289,7 +289,7 @@ void require_upright_cells(const SemidiscreteProblem& problem, const Vector& dis
   constexpr std::string_view key = "initial.displacement = \"static\": ";
   std::string search = reason.what();
   if (search.starts_with(key)) search.erase(0, key.size());
-  const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(inside.pair)] != nullptr;
+  const bool at_obstacle = problem.obstacles[std::size_t(inside.pair)] != nullptr;
   const bool may_be_squeezed = at_obstacle && !problem.internal_force->is_linear();
   throw Error(
       reason.kind(),
@@ -349,7 +349,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   if (problem.contact.has_friction()) {
     state.forces.tangential_reaction.setZero(problem.contact.size() * (problem.dimension - 1));
   }
-  state.contact_status.assign(static_cast<std::size_t>(problem.contact.size()), ContactStatus::open);
+  state.contact_status.assign(std::size_t(problem.contact.size()), ContactStatus::open);
   Vector support_acceleration;
   apply_supports(problem, step, state, support_acceleration);
   if (!initial.static_equilibrium) warn_of_overlap(problem, state);

@@ -73,14 +73,14 @@ class StaticFriction {
     evaluate_obstacle_velocity(problem, Vector::Zero(problem.dof_count()), {}, stage);
     require_friction(problem, velocity, 1.0, stage);
     slide_.setZero(stage.conditions.slip.offset.size());
-    sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+    sliding_.assign(std::size_t(problem.contact.size()), 0);
     const double size = extent(problem.nodes);
     for (Index i = 0; i < problem.contact.size(); ++i) {
       const Vector rate = stage.conditions.slip.offset.segment(i * tangents(), tangents());
       const bool is_rough = problem.contact.friction_coefficient[i] > 0.0 || problem.contact.friction_bound[i] > 0.0;
       if (!is_rough || rate.lpNorm<1>() <= stage.conditions.slip.rounding[i]) continue;
       slide_.segment(i * tangents(), tangents()) = (size / rate.norm()) * rate;
-      sliding_[static_cast<std::size_t>(i)] = 1;
+      sliding_[std::size_t(i)] = 1;
     }
     if (problem.contact.follows_motion() && sliding_points() > 0) {
       throw Error(
@@ -100,7 +100,7 @@ class StaticFriction {
     if (left_out_) stage.conditions.frictionless = sliding_;
     // Increments vanish at the equilibrium, so that only the slide remains: its direction is that of friction.
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
-      const Index first = static_cast<Index>(i) * tangents();
+      const Index first = Index(i) * tangents();
       if (sliding_[i] != 0) stage.conditions.slip.offset.segment(first, tangents()) = slide_.segment(first, tangents());
     }
   }
@@ -130,8 +130,7 @@ class ProximalPoint {
   void iterate(StaticEquilibrium& at) {
     Stage stage = contact_stage(problem_, at.displacement, residual_force(problem_, at.displacement, Vector()));
     for (Index i = 0; i < problem_.supports.size(); ++i) {
-      stage.right_hand_side.prescribed[i] =
-          supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+      stage.right_hand_side.prescribed[i] = supported_[i] - at.displacement[problem_.supports.dofs()[std::size_t(i)]];
     }
     friction_.require(at.displacement, stage);
     solver_->solve(0, stage, solution_);

@@ -46,14 +46,14 @@ bool PrimalDualActiveSet::solve_active(const ContactSystem& system, ContactItera
     reset();  // the factor has lost its base
     return false;
   }
-  const auto count = static_cast<Index>(indices_.size());
+  const auto count = Index(indices_.size());
   right_.resize(count);
   current.reaction.setZero(system.rows());
   current.motion = system.offset();
   for (int pass = 0; pass < 2; ++pass) {
-    for (Index i = 0; i < count; ++i) right_[i] = -current.motion[indices_[static_cast<std::size_t>(i)]];
+    for (Index i = 0; i < count; ++i) right_[i] = -current.motion[indices_[std::size_t(i)]];
     factor_.solve(right_, solution_);
-    for (Index i = 0; i < count; ++i) current.reaction[indices_[static_cast<std::size_t>(i)]] += solution_[i];
+    for (Index i = 0; i < count; ++i) current.reaction[indices_[std::size_t(i)]] += solution_[i];
     system.evaluate(current);
   }
   return solution_.allFinite();
@@ -98,7 +98,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
   } else {
     for (std::size_t k = 0; k < points.size(); ++k) active_[k] = current.reaction[points[k].row] > 0.0 ? 1 : 0;
   }
-  const int limit = 1000 + 20 * static_cast<int>(points.size());
+  const int limit = 1000 + 20 * int(points.size());
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int blocks_left = block_patience;
   for (int k = 0; k < limit; ++k) {

@@ -56,14 +56,14 @@ bool PenaltyFactor::compute(const ContactSystem& system, double penalty) {
   std::vector<double> added;
   for (const ContactPoint& point : system.points()) {
     for (Index row = point.row; row < point.row + point.size; ++row) {
-      number[static_cast<std::size_t>(row)] = static_cast<int>(rows_.size());
+      number[std::size_t(row)] = int(rows_.size());
       rows_.push_back(row);
       added.push_back(penalty * point.diagonal);
     }
   }
-  const auto count = static_cast<Index>(rows_.size());
+  const auto count = Index(rows_.size());
   SparseMatrix matrix = extract(*system.sparse(), number, count, number, count);
-  for (Index row = 0; row < count; ++row) matrix.coeffRef(row, row) += added[static_cast<std::size_t>(row)];
+  for (Index row = 0; row < count; ++row) matrix.coeffRef(row, row) += added[std::size_t(row)];
   matrix.makeCompressed();
   sparse_.emplace(matrix);
   return sparse_->positive_definite();
@@ -89,7 +89,7 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
   for (const ContactPoint& point : system.points()) {
     for (Index row = point.row; row < point.row + point.size; ++row) {
       root[row] = 1.0 / std::sqrt(point.diagonal);
-      v[row] = 1.0 + 0.5 * std::sin(1.7 * static_cast<double>(row * row % 101));
+      v[row] = 1.0 + 0.5 * std::sin(1.7 * double(row * row % 101));
     }
   }
   v.normalize();
@@ -150,8 +150,8 @@ class Admm final : public IterativeContactSolver {
 bool Admm::start(const ContactSystem& system, const ContactIterate& current, ContactSolution& solution) {
   std::vector<double> key;
   for (const ContactPoint& point : system.points()) {
-    key.push_back(static_cast<double>(point.point));
-    key.push_back(static_cast<double>(point.size));
+    key.push_back(double(point.point));
+    key.push_back(double(point.size));
     key.push_back(point.diagonal);
   }
   if (key != key_) {
@@ -253,7 +253,7 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
     if (k == next_adaptation) {
       if (!adapt(system, solution)) return indefinite;
       interval *= interval_growth;
-      next_adaptation += static_cast<int>(interval);
+      next_adaptation += int(interval);
     }
   }
   return "the iteration limit was reached";

@@ -34,7 +34,7 @@ void AlartCurnierStep::add(ContactUnknown unknown, const PaddedVector& trial, co
   std::ranges::copy(trial, unknown.trial.begin());
   std::ranges::copy(test, unknown.test.begin());
   unknown.diagonal = diagonal;
-  present_[static_cast<Index>(unknowns_.size())] = present;
+  present_[Index(unknowns_.size())] = present;
   unknowns_.push_back(unknown);
 }
 
@@ -85,7 +85,7 @@ double AlartCurnierStep::iteration_work(double unknowns) {
 /// x − x_present added, full steps stay defined, and their limits are the solutions of the problem itself.
 void AlartCurnierStep::add_proximal_term() {
   factored_proximal_ = 0.0;
-  const double count = static_cast<double>(unknowns_.size());
+  const double count = double(unknowns_.size());
   if (factor_.smallest_pivot() > 4.0 * count * machine_epsilon) return;
   factored_proximal_ = proximal_size;
   matrix_.diagonal().array() += factored_proximal_;
@@ -95,15 +95,14 @@ void AlartCurnierStep::add_proximal_term() {
 void AlartCurnierStep::expand(const Vector& x, Vector& reaction) const {
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
     const ContactUnknown& unknown = unknowns_[j];
-    for (Index k = 0; k < unknown.size; ++k)
-      reaction[unknown.row + k] += x[static_cast<Index>(j)] * unknown.trial[static_cast<std::size_t>(k)];
+    for (Index k = 0; k < unknown.size; ++k) reaction[unknown.row + k] += x[Index(j)] * unknown.trial[std::size_t(k)];
   }
 }
 
 bool AlartCurnierStep::solve_directly() {
   is_iterative_ = false;
   const bool is_new = unknowns_ != factored_;
-  if (is_new || !has_charged_factor_) work_ += factor_work(static_cast<double>(unknowns_.size()));
+  if (is_new || !has_charged_factor_) work_ += factor_work(double(unknowns_.size()));
   has_charged_factor_ = true;
   if (is_new) {
     factor_.compute(matrix_);
@@ -112,7 +111,7 @@ bool AlartCurnierStep::solve_directly() {
     has_factored_ = true;
   }
   proximal_ = factored_proximal_;
-  const auto count = static_cast<Index>(unknowns_.size());
+  const auto count = Index(unknowns_.size());
   for (Index i = 0; i < count; ++i) right_[i] += proximal_ * present_[i];
   factor_.solve(right_, solution_);
   if (solution_.allFinite()) return true;
@@ -125,13 +124,13 @@ double AlartCurnierStep::correct(const Vector& residual, double reduction, Index
   const auto multiply = [this](const Vector& x, Vector& y) { multiply_dense(matrix_, x, y); };
   const auto precondition = [this](const Vector& x, Vector& y) { reused_.apply(x, y); };
   const double reached = gmres_.solve(multiply, precondition, residual, reduction, limit, correction_);
-  work_ += static_cast<double>(gmres_.iterations()) * iteration_work(static_cast<double>(residual.size()));
+  work_ += double(gmres_.iterations()) * iteration_work(double(residual.size()));
   if (correction_.allFinite()) solution_ += correction_;
   return reached;
 }
 
 bool AlartCurnierStep::solve_with_reused_factor(const ContactSystem& system, double reduction) {
-  const auto count = static_cast<Index>(unknowns_.size());
+  const auto count = Index(unknowns_.size());
   is_iterative_ = true;
   solution_ = present_.head(count);
   const auto find_residual = [&] {
@@ -145,7 +144,7 @@ bool AlartCurnierStep::solve_with_reused_factor(const ContactSystem& system, dou
     const Index limit = std::max(fewest_iterations, count / iterations_per_factor);
     if (correct(residual_, reduction, limit) <= reduction) return true;
   }
-  work_ += factor_work(static_cast<double>(count));
+  work_ += factor_work(double(count));
   if (!reused_.compute(matrix_, unknowns_)) return false;
   has_factored_ = true;
   if (!reused_.map_rows(system, unknowns_)) return false;
@@ -178,12 +177,11 @@ bool AlartCurnierStep::step(const ContactSystem& system, const ContactIterate& f
   } else {
     fixed_motion_ = system.offset();
   }
-  const auto count = static_cast<Index>(unknowns_.size());
+  const auto count = Index(unknowns_.size());
   right_.resize(count);
-  for (Index i = 0; i < count; ++i)
-    right_[i] = -test_motion(unknowns_[static_cast<std::size_t>(i)], fixed_motion_.data());
+  for (Index i = 0; i < count; ++i) right_[i] = -test_motion(unknowns_[std::size_t(i)], fixed_motion_.data());
   const bool direct = count <= few_unknowns;
-  work_ += 3.0 * static_cast<double>(count) * static_cast<double>(system.rows());
+  work_ += 3.0 * double(count) * double(system.rows());
   if (!direct || unknowns_ != factored_) assemble_contact_matrix(system, unknowns_, column_, matrix_);
   proximal_ = 0.0;
   const bool solved = (!direct && solve_with_reused_factor(system, reduction)) || solve_directly();
@@ -192,12 +190,12 @@ bool AlartCurnierStep::step(const ContactSystem& system, const ContactIterate& f
 }
 
 bool AlartCurnierStep::refine(const ContactIterate& full, Vector& reaction) {
-  const auto count = static_cast<Index>(unknowns_.size());
+  const auto count = Index(unknowns_.size());
   if (proximal_ > 0.0 || count == 0) return false;
   bool rounding_only = true;
   residual_.resize(count);
   for (Index i = 0; i < count; ++i) {
-    const ContactUnknown& unknown = unknowns_[static_cast<std::size_t>(i)];
+    const ContactUnknown& unknown = unknowns_[std::size_t(i)];
     const double diagonal_term = unknown.diagonal * solution_[i];
     residual_[i] = -(test_motion(unknown, full.motion.data()) + diagonal_term);
     double size = std::abs(diagonal_term);

@@ -47,7 +47,7 @@ bool has_friction(const ContactSystem& system) {
 bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate) {
   const auto closed = std::count_if(system.points().begin(), system.points().end(),
                                     [&](const auto& p) { return iterate.reaction[p.row] > 0.0; });
-  return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
+  return 10 * closed >= 9 * std::ptrdiff_t(system.points().size());
 }
 
 /// Nonsmooth Newton method after accelerated projected Gauss–Seidel.
@@ -161,9 +161,9 @@ bool AutomaticSolver::accelerated(const ContactIteration& iteration) {
     if (k == 1) second = residual;
     stalled_ = k == 3 && residual > stall * second && newton_cost(iteration, false) < affordable_newton;
     if (stalled_) break;
-    double& past = earlier[static_cast<std::size_t>(k) % outlook];
-    if (k >= static_cast<int>(outlook)) {
-      const double rate = std::log(past / best) / static_cast<double>(outlook);
+    double& past = earlier[std::size_t(k) % outlook];
+    if (k >= int(outlook)) {
+      const double rate = std::log(past / best) / double(outlook);
       const double remaining = rate > 0.0 ? std::log(best / target) / rate : std::numeric_limits<double>::infinity();
       if (remaining > newton_cost(iteration, unchanged > 1)) break;
     }
@@ -233,8 +233,7 @@ bool AutomaticSolver::sweeps_and_newton(const ContactIteration& iteration) {
   begin_ = iteration.current.reaction;
   const int before = iteration.solution.iterations;
   const bool solved = accelerated(iteration);
-  ContactCosts::update_mean(costs_.of_sweeps,
-                            static_cast<double>(iteration.solution.iterations - before) * sweep_cost(iteration));
+  ContactCosts::update_mean(costs_.of_sweeps, double(iteration.solution.iterations - before) * sweep_cost(iteration));
   if (solved) return true;
   if (is_nearly_closed(iteration.system, iteration.current) && stalled_) {
     // Newton's method does better from the start than from the result of a few sweeps.
@@ -336,8 +335,8 @@ bool AutomaticSolver::fall_back(const ContactIteration& iteration, bool was_cold
 /// The last resort: Gauss–Seidel for as long as it brings progress, with Newton's method tried now and then. If
 /// conditions depend on one another it may creep, and still converge.
 bool AutomaticSolver::sweep_on(const ContactIteration& iteration) {
-  const double rows = static_cast<double>(iteration.system.rows());
-  const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
+  const double rows = double(iteration.system.rows());
+  const int sweeps = int(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
   for (int k = 0; k < last_iterations; ++k) {
     best_.restart(iteration);
     const double before = best_.merit;

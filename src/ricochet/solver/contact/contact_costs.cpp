@@ -20,7 +20,7 @@ double unknown_count(const ContactIteration& iteration) {
     const PaddedVector r = padded(point, iteration.current.reaction);
     if (!(r[0] > 0.0)) continue;
     const bool slips = point.has_friction() && r.tail<2>().norm() >= point.friction_limit(r[0]) * (1.0 - 1e-9);
-    unknowns += static_cast<double>(slips ? point.size - 1 : point.size);
+    unknowns += double(slips ? point.size - 1 : point.size);
   }
   return unknowns;
 }
@@ -30,13 +30,13 @@ double unknown_count(const ContactIteration& iteration) {
 double sweep_cost(const ContactIteration& iteration) {
   double closed_rows = 0.0;
   for (const ContactPoint& point : iteration.system.points())
-    closed_rows += iteration.current.reaction[point.row] > 0.0 ? static_cast<double>(point.size) : 0.0;
-  return std::max(closed_rows, 1.0) * (static_cast<double>(iteration.system.rows()) + point_cost);
+    closed_rows += iteration.current.reaction[point.row] > 0.0 ? double(point.size) : 0.0;
+  return std::max(closed_rows, 1.0) * (double(iteration.system.rows()) + point_cost);
 }
 
 double newton_cost(const ContactIteration& iteration, bool settled) {
   const double unknowns = unknown_count(iteration);
-  const double product = 4.0 * unknowns * static_cast<double>(iteration.system.rows());
+  const double product = 4.0 * unknowns * double(iteration.system.rows());
   return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_cost(iteration);
 }
 
@@ -49,9 +49,9 @@ bool ContactCosts::prefer_newton(const ContactIteration& iteration) const {
   double expected = of_newton;
   if (!(expected > 0.0)) {
     const double unknowns = unknown_count(iteration);
-    expected = amortized_factor * AlartCurnierStep::factor_work(unknowns) +
-               2.0 * (6.0 * unknowns * static_cast<double>(iteration.system.rows()) +
-                      4.0 * AlartCurnierStep::iteration_work(unknowns));
+    expected =
+        amortized_factor * AlartCurnierStep::factor_work(unknowns) +
+        2.0 * (6.0 * unknowns * double(iteration.system.rows()) + 4.0 * AlartCurnierStep::iteration_work(unknowns));
   }
   return expected < of_sweeps;
 }

@@ -52,7 +52,7 @@ void ContactProblem::validate() const {
   require_size(friction_coefficient.size(), points(), "the friction coefficients");
   if (friction_bound.size() > 0) require_size(friction_bound.size(), points(), "the friction bounds");
   if (offset_rounding.size() > 0) require_size(offset_rounding.size(), rows(), "the rounding of q");
-  if (!eligible.empty()) require_size(static_cast<Index>(eligible.size()), points(), "the list of eligible points");
+  if (!eligible.empty()) require_size(Index(eligible.size()), points(), "the list of eligible points");
   const auto admissible = [](double value) { return value >= 0.0 && std::isfinite(value); };
   for (Index i = 0; i < points(); ++i) {
     if (!admissible(friction_coefficient[i]))

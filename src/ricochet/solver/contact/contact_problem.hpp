@@ -41,13 +41,11 @@ struct ContactProblem {
   ContactProblem(Index dimension, Matrix w, Vector q, double friction);
   ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction);
 
-  [[nodiscard]] Index points() const { return static_cast<Index>(row_offset.size()) - 1; }
+  [[nodiscard]] Index points() const { return Index(row_offset.size()) - 1; }
   [[nodiscard]] Index rows() const { return offset.size(); }
-  [[nodiscard]] bool is_eligible(Index point) const {
-    return eligible.empty() || eligible[static_cast<std::size_t>(point)] != 0;
-  }
+  [[nodiscard]] bool is_eligible(Index point) const { return eligible.empty() || eligible[std::size_t(point)] != 0; }
   [[nodiscard]] Index number_of(Index point) const {
-    return point_numbers.empty() ? point : point_numbers[static_cast<std::size_t>(point)];
+    return point_numbers.empty() ? point : point_numbers[std::size_t(point)];
   }
   [[nodiscard]] double bound(Index point) const { return friction_bound.size() > 0 ? friction_bound[point] : 0.0; }
   /// Throws Error(invalid_input), which names the point, if sizes do not agree, or a coefficient or bound is negative

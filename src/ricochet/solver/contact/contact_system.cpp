@@ -35,7 +35,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   row_of_.clear();
   points_.clear();
   const Index points = problem.points();
-  scale_.assign(static_cast<std::size_t>(points), 1.0);
+  scale_.assign(std::size_t(points), 1.0);
   normal_.assign(scale_.size(), 1.0);
   mean_.assign(scale_.size(), 1.0);
   std::vector<double> largest_of(scale_.size(), 0.0);
@@ -56,8 +56,8 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   // Few rows, or rows that are not sparse: dense loops are faster.
   if (mode_ == Mode::sparse) {
     const SparseMatrix& w = *operator_->sparse();
-    const double rows = static_cast<double>(w.rows());
-    if (w.rows() <= small || (w.rows() <= few_rows && static_cast<double>(w.nonZeros()) > 0.1 * rows * rows)) {
+    const double rows = double(w.rows());
+    if (w.rows() <= small || (w.rows() <= few_rows && double(w.nonZeros()) > 0.1 * rows * rows)) {
       found_ = make_dense_operator(Matrix(w));
       operator_ = found_;
       mode_ = Mode::dense;
@@ -67,14 +67,14 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   fault_.clear();
   blocks_.clear();
   for (Index i = 0; i < points; ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     const PointMatrix block =
         operator_->block(problem.row_offset[at], problem.row_offset[at + 1] - problem.row_offset[at]);
     blocks_.push_back(block);
     if (fault_.empty() && !(block.allFinite() && (block.diagonal().array() >= 0.0).all()))
       fault_ = fmt::format("W has a negative or non-finite entry in the diagonal block of point {}", i);
     normal_[at] = block(0, 0);
-    mean_[at] = block.trace() / static_cast<double>(block.rows());
+    mean_[at] = block.trace() / double(block.rows());
     largest_of[at] = block.diagonal().maxCoeff();
     largest = std::max(largest, largest_of[at]);
   }
@@ -95,7 +95,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
 }
 
 ContactPoint ContactSystem::make_point(const ContactProblem& problem, Index i) const {
-  const auto at = static_cast<std::size_t>(i);
+  const auto at = std::size_t(i);
   ContactPoint point;
   point.point = i;
   point.row = problem.row_offset[at];
@@ -118,10 +118,10 @@ void ContactSystem::set_data(const ContactProblem& problem) {
   double largest = 0.0;
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
-    const auto q = problem.offset.segment(row, problem.row_offset[static_cast<std::size_t>(i) + 1] - row);
+    const Index row = problem.row_offset[std::size_t(i)];
+    const auto q = problem.offset.segment(row, problem.row_offset[std::size_t(i) + 1] - row);
     data_are_finite_ = data_are_finite_ && q.allFinite();
-    largest = std::max(largest, scale_[static_cast<std::size_t>(i)] * q.lpNorm<Eigen::Infinity>());
+    largest = std::max(largest, scale_[std::size_t(i)] * q.lpNorm<Eigen::Infinity>());
   }
   if (!data_are_finite_ || !std::isfinite(largest) || largest == 0.0) return;
   const double range = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -largest_exponent, largest_exponent));
@@ -129,7 +129,7 @@ void ContactSystem::set_data(const ContactProblem& problem) {
     if (!problem.is_eligible(i)) continue;
     ContactPoint point = make_point(problem, i);
     PaddedVector q = PaddedVector::Zero();
-    const double scale = range * scale_[static_cast<std::size_t>(i)];
+    const double scale = range * scale_[std::size_t(i)];
     for (Index k = 0; k < point.size; ++k) q[k] = scale * problem.offset[point.row + k];
     data_ = std::max(data_, residual(point, PaddedVector::Zero(), q));
   }
@@ -142,13 +142,13 @@ void ContactSystem::select(const ContactProblem& problem, const std::vector<char
   chosen_.clear();
   for (Index i = 0; i < problem.points(); ++i) {
     // Sparse and product operators keep all points: a selection would cost more than they do.
-    if (mode_ != Mode::dense || selected[static_cast<std::size_t>(i)] != 0) chosen_.push_back(i);
+    if (mode_ != Mode::dense || selected[std::size_t(i)] != 0) chosen_.push_back(i);
   }
   gather(problem);
-  offset_.resize(static_cast<Index>(row_of_.size()));
+  offset_.resize(Index(row_of_.size()));
   offset_rounding_.setZero(offset_.size());
   for (Index row = 0; row < offset_.size(); ++row) {
-    const auto at = static_cast<std::size_t>(row);
+    const auto at = std::size_t(row);
     const double scale = data_scale_ * row_scale_[at];
     offset_[row] = scale * problem.offset[row_of_[at]];
     if (problem.offset_rounding.size() > 0) offset_rounding_[row] = scale * problem.offset_rounding[row_of_[at]];
@@ -164,8 +164,8 @@ void ContactSystem::gather(const ContactProblem& problem) {
     ContactPoint point = make_point(problem, i);
     const Index first = point.row;
     // Sparse and product operators keep all of their rows.
-    const Index size = mode_ == Mode::dense ? point.size : problem_row_offset_[static_cast<std::size_t>(i) + 1] - first;
-    point.row = static_cast<Index>(rows_.size());
+    const Index size = mode_ == Mode::dense ? point.size : problem_row_offset_[std::size_t(i) + 1] - first;
+    point.row = Index(rows_.size());
     for (Index k = 0; k < size; ++k) rows_.push_back(first + k);
     if (problem.is_eligible(i)) points_.push_back(point);
   }
@@ -186,8 +186,8 @@ void ContactSystem::gather(const ContactProblem& problem) {
   if (same && std::equal(points_.begin(), points_.end(), last_points_.begin(), last_points_.end(), is_alike)) return;
   point_operators_.clear();
   for (const ContactPoint& point : points_) {
-    const double scale = row_scale_[static_cast<std::size_t>(point.row)];
-    const PointMatrix& whole = blocks_[static_cast<std::size_t>(point.point)];
+    const double scale = row_scale_[std::size_t(point.row)];
+    const PointMatrix& whole = blocks_[std::size_t(point.point)];
     const PointMatrix block = operator_scale_ * scale * scale * whole.topLeftCorner(point.size, point.size);
     point_operators_.push_back(make_point_operator(block));
   }
@@ -201,7 +201,7 @@ Index ContactSystem::system_row(Index problem_row) const {
 /// Copies rows in runs of neighbours.
 void ContactSystem::copy_dense() {
   const Matrix& w = *operator_->dense();
-  const auto count = static_cast<Index>(row_of_.size());
+  const auto count = Index(row_of_.size());
   if (matrix_.rows() != count) matrix_.resize(count, count);
   std::vector<Index>& runs = runs_;
   runs.clear();
@@ -213,7 +213,7 @@ void ContactSystem::copy_dense() {
   double sum = 0.0;
   for (Index j = 0; j < count; ++j) {
     const double* column = w.data() + problem_row(j) * w.rows();
-    const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
+    const double scale = operator_scale_ * row_scale_[std::size_t(j)];
     for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
       const Index first = runs[k], size = runs[k + 1] - first;
       const Eigen::Map<const Vector> from(column + problem_row(first), size);
@@ -235,9 +235,9 @@ void ContactSystem::copy_sparse() {
   double sum = 0.0;
   sparse_ = *operator_->sparse();
   for (Index j = 0; j < sparse_.cols(); ++j) {
-    const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
+    const double scale = operator_scale_ * row_scale_[std::size_t(j)];
     for (SparseMatrix::InnerIterator entry(sparse_, j); entry; ++entry)
-      entry.valueRef() *= scale * row_scale_[static_cast<std::size_t>(entry.row())];
+      entry.valueRef() *= scale * row_scale_[std::size_t(entry.row())];
     sum += sparse_.col(j).sum();
   }
   note_sum(sum);
@@ -274,12 +274,12 @@ void ContactSystem::multiply(const Vector& x, Vector& y) const {
   product_argument_.setZero(operator_->rows());
   for (const ContactPoint& point : points_) {
     for (Index row = point.row; row < point.row + point.size; ++row)
-      product_argument_[row] = row_scale_[static_cast<std::size_t>(row)] * x[row];
+      product_argument_[row] = row_scale_[std::size_t(row)] * x[row];
   }
   operator_->multiply(product_argument_, product_result_);
   y.resize(rows());
   for (Index row = 0; row < y.size(); ++row)
-    y[row] = operator_scale_ * row_scale_[static_cast<std::size_t>(row)] * product_result_[row];
+    y[row] = operator_scale_ * row_scale_[std::size_t(row)] * product_result_[row];
 }
 
 void ContactSystem::evaluate(ContactIterate& iterate) const {
@@ -324,7 +324,7 @@ void ContactSystem::scale_reaction(const Vector& reaction, Vector& scaled) const
   scaled.setZero(rows());
   for (const ContactPoint& point : points_) {
     const double scale = reaction_scale(point.point);
-    const Index first = problem_row_offset_[static_cast<std::size_t>(point.point)];
+    const Index first = problem_row_offset_[std::size_t(point.point)];
     for (Index k = 0; k < point.size; ++k) scaled[point.row + k] = scale * reaction[first + k];
   }
 }
@@ -333,15 +333,14 @@ void ContactSystem::unscale_reaction(const Vector& scaled, Vector& reaction) con
   reaction.setZero(problem_row_offset_.back());
   for (const ContactPoint& point : points_) {
     const double scale = 1.0 / reaction_scale(point.point);
-    const Index first = problem_row_offset_[static_cast<std::size_t>(point.point)];
+    const Index first = problem_row_offset_[std::size_t(point.point)];
     for (Index k = 0; k < point.size; ++k) reaction[first + k] = scale * scaled[point.row + k];
   }
 }
 
 void ContactSystem::unscale_motion(const Vector& scaled, Vector& motion) const {
   motion.resize(rows());
-  for (Index row = 0; row < rows(); ++row)
-    motion[row] = scaled[row] / (data_scale_ * row_scale_[static_cast<std::size_t>(row)]);
+  for (Index row = 0; row < rows(); ++row) motion[row] = scaled[row] / (data_scale_ * row_scale_[std::size_t(row)]);
 }
 
 }  // namespace ricochet

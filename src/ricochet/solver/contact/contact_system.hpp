@@ -53,7 +53,7 @@ class ContactSystem {
 
   /// True if q_N is below `margin` times the largest data, in the unit of the residual.
   [[nodiscard]] bool is_near(const ContactProblem& problem, Index point, double margin) const {
-    const auto at = static_cast<std::size_t>(point);
+    const auto at = std::size_t(point);
     return motion_scale(point) * problem.offset[problem.row_offset[at]] < margin * data_ * std::sqrt(normal_[at]);
   }
   [[nodiscard]] const std::vector<ContactPoint>& points() const { return points_; }
@@ -61,7 +61,7 @@ class ContactSystem {
   [[nodiscard]] Index rows() const { return offset_.size(); }
   /// Row of the problem for a row of the system, and back (−1: not in the system): data kept from one selection of
   /// points to the next are identified by rows of the problem.
-  [[nodiscard]] Index problem_row(Index row) const { return row_of_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] Index problem_row(Index row) const { return row_of_[std::size_t(row)]; }
   [[nodiscard]] Index system_row(Index problem_row) const;
   [[nodiscard]] const Vector& offset() const { return offset_; }
   /// Largest natural map of r = 0, over all eligible points. In [1, 2), or zero: r = 0 is a solution.
@@ -124,10 +124,8 @@ class ContactSystem {
  private:
   enum class Mode { dense, sparse, product };
   [[nodiscard]] ContactPoint make_point(const ContactProblem& problem, Index i) const;
-  [[nodiscard]] double motion_scale(Index i) const { return data_scale_ * scale_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] double reaction_scale(Index i) const {
-    return data_scale_ / operator_scale_ / scale_[static_cast<std::size_t>(i)];
-  }
+  [[nodiscard]] double motion_scale(Index i) const { return data_scale_ * scale_[std::size_t(i)]; }
+  [[nodiscard]] double reaction_scale(Index i) const { return data_scale_ / operator_scale_ / scale_[std::size_t(i)]; }
   void gather(const ContactProblem& problem);
   void copy_dense();
   void note_sum(double sum);

@@ -19,16 +19,16 @@ constexpr int corrections = 3;
 /// Computes d_P and s of a row that enters. The rounding of L Lᵀ is that of √W_ii √W_jj, entry by entry.
 DualActiveSet::Entry DualActiveSet::examine(Index entering) {
   const Matrix& w = *system_->dense();
-  const auto count = static_cast<Index>(rows_.size());
+  const auto count = Index(rows_.size());
   forward_.resize(count);
-  for (Index i = 0; i < count; ++i) forward_[i] = w(rows_[static_cast<std::size_t>(i)], entering);
+  for (Index i = 0; i < count; ++i) forward_[i] = w(rows_[std::size_t(i)], entering);
   const auto lower = factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>();
   lower.solveInPlace(forward_);
   direction_ = -forward_;
   lower.transpose().solveInPlace(direction_);
   double terms = std::sqrt(w(entering, entering));
   for (Index i = 0; i < count; ++i) {
-    const Index at = rows_[static_cast<std::size_t>(i)];
+    const Index at = rows_[std::size_t(i)];
     terms += std::abs(direction_[i]) * std::sqrt(w(at, at));
   }
   return {w(entering, entering) - forward_.squaredNorm(), machine_epsilon * terms * terms};
@@ -36,7 +36,7 @@ DualActiveSet::Entry DualActiveSet::examine(Index entering) {
 
 /// Appends the point examined by examine.
 void DualActiveSet::append(Index point, double curvature) {
-  const auto count = static_cast<Index>(rows_.size());
+  const auto count = Index(rows_.size());
   if (factor_.rows() <= count) {
     const Index size = std::min(system_->rows(), std::max<Index>(2 * count, 16));
     factor_.conservativeResize(size, size);
@@ -49,8 +49,8 @@ void DualActiveSet::append(Index point, double curvature) {
 
 /// Removes a row from L by rotations, which leave it triangular.
 void DualActiveSet::remove(std::size_t position) {
-  const auto count = static_cast<Index>(rows_.size());
-  for (auto i = static_cast<Index>(position); i + 1 < count; ++i) {
+  const auto count = Index(rows_.size());
+  for (auto i = Index(position); i + 1 < count; ++i) {
     factor_.row(i).head(i + 2) = factor_.row(i + 1).head(i + 2);
     const double diagonal = factor_(i, i), beside = factor_(i, i + 1);
     const double length = std::hypot(diagonal, beside);
@@ -62,8 +62,8 @@ void DualActiveSet::remove(std::size_t position) {
       factor_(k, i + 1) = cosine * other - sine * one;
     }
   }
-  rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(position));
-  set_.erase(set_.begin() + static_cast<std::ptrdiff_t>(position));
+  rows_.erase(rows_.begin() + std::ptrdiff_t(position));
+  set_.erase(set_.begin() + std::ptrdiff_t(position));
 }
 
 /// Starts from the pressing points, as far as they are independent and press without the others.
@@ -84,7 +84,7 @@ void DualActiveSet::start(const ContactIterate& current) {
     solve_set(system_->offset());
     pressing.clear();
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      if (direction_[static_cast<Index>(i)] >= 0.0) pressing.push_back(set_[i]);
+      if (direction_[Index(i)] >= 0.0) pressing.push_back(set_[i]);
     }
     if (pressing.size() == set_.size()) return;
   }
@@ -92,9 +92,9 @@ void DualActiveSet::start(const ContactIterate& current) {
 
 /// Computes −W_PP⁻¹ u_P in `direction_`.
 void DualActiveSet::solve_set(const Vector& motion) {
-  const auto count = static_cast<Index>(rows_.size());
+  const auto count = Index(rows_.size());
   direction_.resize(count);
-  for (Index i = 0; i < count; ++i) direction_[i] = -motion[rows_[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < count; ++i) direction_[i] = -motion[rows_[std::size_t(i)]];
   const auto lower = factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>();
   lower.solveInPlace(direction_);
   lower.transpose().solveInPlace(direction_);
@@ -110,7 +110,7 @@ void DualActiveSet::correct(ContactIterate& current) {
     solve_set(current.motion);
     for (std::size_t i = rows_.size(); i-- > 0;) {
       double& reaction = current.reaction[rows_[i]];
-      reaction += direction_[static_cast<Index>(i)];
+      reaction += direction_[Index(i)];
       if (reaction >= 0.0) continue;
       reaction = 0.0;
       remove(i);
@@ -120,7 +120,7 @@ void DualActiveSet::correct(ContactIterate& current) {
 }
 
 double DualActiveSet::floor_of(Index point, const ContactIterate& current) const {
-  return system_->floor_of(system_->points()[static_cast<std::size_t>(point)], current).normal;
+  return system_->floor_of(system_->points()[std::size_t(point)], current).normal;
 }
 
 /// Returns −1 if no point outside of P penetrates.
@@ -128,7 +128,7 @@ Index DualActiveSet::most_violated(const ContactIterate& current) const {
   Index result = -1;
   double deepest = 0.0;
   for (Index k = 0; k < point_count(); ++k) {
-    if (excused_[static_cast<std::size_t>(k)] != 0 || std::ranges::find(set_, k) != set_.end()) continue;
+    if (excused_[std::size_t(k)] != 0 || std::ranges::find(set_, k) != set_.end()) continue;
     const double motion = current.motion[row_of(k)];
     if (motion >= -floor_of(k, current) || motion >= deepest) continue;
     deepest = motion;
@@ -145,17 +145,17 @@ bool DualActiveSet::is_contradiction(Index entering, const Entry& entry, const C
   if (!(lack > std::sqrt(contradicting * entry.rounding) * system_->data())) return false;
   double rounding = floor_of(entering, current);
   for (std::size_t i = 0; i < set_.size(); ++i)
-    rounding += std::max(direction_[static_cast<Index>(i)], 0.0) * floor_of(set_[i], current);
+    rounding += std::max(direction_[Index(i)], 0.0) * floor_of(set_[i], current);
   return lack > rounding;
 }
 
 void DualActiveSet::note_contradiction(Index entering) {
-  const auto number = [&](Index k) { return system_->points()[static_cast<std::size_t>(k)].point; };
+  const auto number = [&](Index k) { return system_->points()[std::size_t(k)].point; };
   double largest = 1.0;
   for (const double part : direction_) largest = std::max(largest, part);
   contradiction_.assign(1, number(entering));
   for (std::size_t i = 0; i < set_.size(); ++i) {
-    if (direction_[static_cast<Index>(i)] > 1e-9 * largest) contradiction_.push_back(number(set_[i]));
+    if (direction_[Index(i)] > 1e-9 * largest) contradiction_.push_back(number(set_[i]));
   }
   std::ranges::sort(contradiction_);
 }
@@ -172,7 +172,7 @@ bool DualActiveSet::enter(Index entering, ContactIterate& current, int& iteratio
     double step = depends ? std::numeric_limits<double>::infinity() : -motion / entry.curvature;
     std::size_t leaving = set_.size();
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      const double rate = direction_[static_cast<Index>(i)];
+      const double rate = direction_[Index(i)];
       if (!(rate < smallest)) continue;
       const double reached = current.reaction[rows_[i]] / -rate;
       if (reached >= step) continue;
@@ -185,7 +185,7 @@ bool DualActiveSet::enter(Index entering, ContactIterate& current, int& iteratio
     }
     for (std::size_t i = 0; i < set_.size(); ++i) {
       double& reaction = current.reaction[rows_[i]];
-      reaction = i == leaving ? 0.0 : std::max(reaction + step * direction_[static_cast<Index>(i)], 0.0);
+      reaction = i == leaving ? 0.0 : std::max(reaction + step * direction_[Index(i)], 0.0);
     }
     current.reaction[at] += step;
     if (leaving == set_.size()) {
@@ -206,16 +206,16 @@ std::string DualActiveSet::solve(const ContactSystem& system, ContactIterate& cu
   start(current);
   current.reaction.setZero(system.rows());
   solve_set(system.offset());
-  for (std::size_t i = 0; i < rows_.size(); ++i) current.reaction[rows_[i]] = direction_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < rows_.size(); ++i) current.reaction[rows_[i]] = direction_[Index(i)];
   bool excused = false;
-  const int limit = iterations + 1000 + 20 * static_cast<int>(point_count());
+  const int limit = iterations + 1000 + 20 * int(point_count());
   while (iterations < limit) {
     correct(current);
     const Index entering = most_violated(current);
     if (entering < 0) return excused ? "contact conditions contradict one another, or nearly do" : "";
     if (enter(entering, current, iterations, limit)) continue;
     if (!contradiction_.empty()) return "contact conditions contradict one another: no motion meets them all";
-    excused_[static_cast<std::size_t>(entering)] = 1;
+    excused_[std::size_t(entering)] = 1;
     excused = true;
   }
   return "the active set still changes at the iteration limit";

@@ -32,8 +32,8 @@ class DualActiveSet {
     double rounding = 0.0;   ///< size of the terms of s, times ε
   };
 
-  [[nodiscard]] Index point_count() const { return static_cast<Index>(system_->points().size()); }
-  [[nodiscard]] Index row_of(Index point) const { return system_->points()[static_cast<std::size_t>(point)].row; }
+  [[nodiscard]] Index point_count() const { return Index(system_->points().size()); }
+  [[nodiscard]] Index row_of(Index point) const { return system_->points()[std::size_t(point)].row; }
   [[nodiscard]] double floor_of(Index point, const ContactIterate& current) const;
   void start(const ContactIterate& current);
   Entry examine(Index entering);

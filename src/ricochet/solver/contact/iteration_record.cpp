@@ -19,7 +19,7 @@ IterationRecord count_states(const ContactSystem& system, const Vector& reaction
   IterationRecord counts;
   for (const ContactPoint& point : system.points()) {
     const ContactStatus status = status_of(point, reaction);
-    ContactStatus& before = solution.record_status[static_cast<std::size_t>(point.point)];
+    ContactStatus& before = solution.record_status[std::size_t(point.point)];
     counts.changed += status != before ? 1 : 0;
     counts.closed += status != ContactStatus::open ? 1 : 0;
     counts.slipping += status == ContactStatus::slip ? 1 : 0;

@@ -82,7 +82,7 @@ void ContactOptions::validate() const {
 bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
+    const Index row = problem.row_offset[std::size_t(i)];
     const double u = problem.offset[row];
     const double offset_rounding = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
     if (!(u >= -(offset_rounding + sum_rounding * std::abs(u)))) return false;
@@ -92,12 +92,12 @@ bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
 
 void IterativeContactSolver::choose_points(const ContactProblem& problem) {
   const bool all = !works_on_candidates();
-  selected_.assign(static_cast<std::size_t>(problem.points()), 0);
+  selected_.assign(std::size_t(problem.points()), 0);
   for (Index i = 0; i < problem.points(); ++i) {
-    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
+    const Index row = problem.row_offset[std::size_t(i)];
     const bool had_reaction = warm_reaction_.size() == problem.rows() && warm_reaction_[row] != 0.0;
     const bool may_press = all || system_.is_near(problem, i, margin) || had_reaction;
-    selected_[static_cast<std::size_t>(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
+    selected_[std::size_t(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
   }
   system_.select(problem, selected_);
 }
@@ -151,8 +151,8 @@ void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactS
   }
   solution.motion = problem.offset;
   for (Index i = 0; i < problem.points(); ++i) {
-    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
-    const Index size = problem.row_offset[static_cast<std::size_t>(i) + 1] - row;
+    const Index row = problem.row_offset[std::size_t(i)];
+    const Index size = problem.row_offset[std::size_t(i) + 1] - row;
     if (solution.reaction.segment(row, size).isZero(0.0)) continue;
     add_columns(problem.rows(), size, w->data() + row * w->rows(), w->rows(), solution.reaction.data() + row,
                 solution.motion.data());
@@ -164,7 +164,7 @@ bool IterativeContactSolver::add_penetrating(const ContactProblem& problem, cons
                                              const ContactSolution& solution) {
   bool found = false;
   for (Index i = 0; i < problem.points(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     if (selected_[at] != 0 || !problem.is_eligible(i)) continue;
     const Index row = problem.row_offset[at];
     if (!(solution.motion[row] < 0.0)) continue;
@@ -228,7 +228,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   bool finite = solution.reaction.allFinite();
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     const Index row = problem.row_offset[at];
     finite = finite && solution.motion.segment(row, problem.row_offset[at + 1] - row).allFinite();
     if (selected_[at] != 0 || solution.motion[row] >= 0.0) continue;
@@ -258,9 +258,9 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
 }
 
 void IterativeContactSolver::find_status(const ContactProblem& problem, ContactSolution& solution) const {
-  solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
+  solution.status.assign(std::size_t(problem.points()), ContactStatus::open);
   for (const ContactPoint& point : system_.points()) {
-    ContactStatus& status = solution.status[static_cast<std::size_t>(point.point)];
+    ContactStatus& status = solution.status[std::size_t(point.point)];
     const auto r = finished_.reaction.segment(point.row, point.size);
     if (r.isZero(0.0)) continue;
     status = ContactStatus::closed;
@@ -324,9 +324,9 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   solution.iterations = solution.newton_steps = solution.factorizations = 0;
   solution.residual = solution.rounding_floor = 0.0;
   solution.record.clear();
-  if (options.record) solution.record_status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
+  if (options.record) solution.record_status.assign(std::size_t(problem.points()), ContactStatus::open);
   solution.reaction.setZero(problem.rows());
-  solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
+  solution.status.assign(std::size_t(problem.points()), ContactStatus::open);
   solution.motion = problem.offset;
   if (!system_.fault().empty()) return refuse_data(system_.fault(), solution);
   system_.set_data(problem);

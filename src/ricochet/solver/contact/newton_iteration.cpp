@@ -15,7 +15,7 @@ constexpr int cut_limit = 12;
 constexpr int jump_limit = 12;
 /// Required part of the first-order decrease.
 constexpr double sufficient = 1e-4;
-constexpr auto none = static_cast<std::size_t>(-1);
+constexpr auto none = std::size_t(-1);
 
 bool NewtonSystem::solve(const ContactSystem& system, const std::vector<PointEquation>& equations, Vector& change) {
   const bool solved =
@@ -73,7 +73,7 @@ bool NewtonSystem::solve_dense(const ContactSystem& system, const std::vector<Po
   }
   assemble_dense(system, equations);
   factor_.compute(matrix_);
-  if (!(factor_.smallest_pivot() > 4.0 * static_cast<double>(start_.back()) * machine_epsilon)) {
+  if (!(factor_.smallest_pivot() > 4.0 * double(start_.back()) * machine_epsilon)) {
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const ContactPoint& point = points[active_[a]];
       matrix_.block(start_[a], start_[a], point.size, point.size) +=
@@ -96,25 +96,22 @@ void NewtonSystem::find_pattern(const ContactSystem& system) {
   const bool same_operator = pattern_ == &w;
   pattern_ = &w;
   last_point_of_.swap(point_of_);
-  point_of_.assign(static_cast<std::size_t>(w.rows()), none);
+  point_of_.assign(std::size_t(w.rows()), none);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    for (Index row = points[k].row; row < points[k].row + points[k].size; ++row)
-      point_of_[static_cast<std::size_t>(row)] = k;
+    for (Index row = points[k].row; row < points[k].row + points[k].size; ++row) point_of_[std::size_t(row)] = k;
   }
   if (same_operator && point_of_ == last_point_of_) return;
   std::vector<Eigen::Triplet<double, int>> entries;
-  const auto add = [&](Index row, Index column) {
-    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), 0.0);
-  };
+  const auto add = [&](Index row, Index column) { entries.emplace_back(int(row), int(column), 0.0); };
   for (Index column = 0; column < w.cols(); ++column) {
     add(column, column);
-    if (point_of_[static_cast<std::size_t>(column)] == none) continue;
+    if (point_of_[std::size_t(column)] == none) continue;
     for (SparseMatrix::InnerIterator entry(w, column); entry; ++entry) {
-      const std::size_t k = point_of_[static_cast<std::size_t>(entry.row())];
+      const std::size_t k = point_of_[std::size_t(entry.row())];
       if (k == none) continue;
       for (Index row = points[k].row; row < points[k].row + points[k].size; ++row) add(row, column);
     }
-    const ContactPoint& own = points[point_of_[static_cast<std::size_t>(column)]];
+    const ContactPoint& own = points[point_of_[std::size_t(column)]];
     for (Index row = own.row; row < own.row + own.size; ++row) add(row, column);
   }
   sparse_matrix_.resize(w.rows(), w.cols());
@@ -133,19 +130,18 @@ bool NewtonSystem::solve_sparse(const ContactSystem& system, const std::vector<P
       const auto* outer = sparse_matrix_.outerIndexPtr();
       const auto* inner = sparse_matrix_.innerIndexPtr();
       std::fill(values + outer[column], values + outer[column + 1], 0.0);
-      const std::size_t own = point_of_[static_cast<std::size_t>(column)];
+      const std::size_t own = point_of_[std::size_t(column)];
       if (own == none) {
         sparse_matrix_.coeffRef(column, column) = 1.0;
         continue;
       }
       const auto add = [&](const ContactPoint& point, const Eigen::Matrix3d& block, Index k, double factor) {
-        const auto* at =
-            std::lower_bound(inner + outer[column], inner + outer[column + 1], static_cast<int>(point.row));
+        const auto* at = std::lower_bound(inner + outer[column], inner + outer[column + 1], int(point.row));
         double* to = values + (at - inner);
         for (Index i = 0; i < point.size; ++i) to[i] += factor * block(i, k);
       };
       for (SparseMatrix::InnerIterator entry(w, column); entry; ++entry) {
-        const std::size_t k = point_of_[static_cast<std::size_t>(entry.row())];
+        const std::size_t k = point_of_[std::size_t(entry.row())];
         if (k != none) add(points[k], equations[k].by_motion, entry.row() - points[k].row, entry.value());
       }
       const Index k = column - points[own].row;
@@ -261,7 +257,7 @@ std::string NewtonContactSolver::iterate(const ContactSystem& system, const Cont
       return "";
     }
     if (search_line(system, current, *std::ranges::max_element(merits_))) {
-      merits_[static_cast<std::size_t>(k) % memory] = merit_;
+      merits_[std::size_t(k) % memory] = merit_;
     } else if (++jumps <= jump_limit && std::isfinite(residual)) {
       std::swap(current, trial_);
       merit_ = merit(system, current);

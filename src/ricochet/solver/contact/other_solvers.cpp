@@ -20,12 +20,12 @@ const std::vector<OtherSolvers::Kind> OtherSolvers::last{{"newton-fischer-burmei
 
 bool OtherSolvers::solve(const ContactIteration& iteration, const std::vector<Kind>& kinds, BestIterate& best) {
   if (!refuse_bounds(iteration.system).empty()) return false;
-  const double rows = static_cast<double>(iteration.system.rows());
+  const double rows = double(iteration.system.rows());
   for (const bool cold : {true, false}) {
     for (const Kind& kind : kinds) {
       const double limit = kind.factorizes ? max_factor_work / (rows * rows * rows) : max_sweep_work / (rows * rows);
       ContactOptions options = iteration.options;
-      options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(kind.iteration_limit)));
+      options.iteration_limit = int(std::min(limit, double(kind.iteration_limit)));
       if (options.iteration_limit < fewest_worth_a_try) continue;
       iteration.current.reaction = cold ? Vector(Vector::Zero(iteration.system.rows())) : best.iterate.reaction;
       iteration.system.evaluate(iteration.current);

@@ -52,16 +52,16 @@ class AcceleratedGradient final : public IterativeContactSolver {
 
 /// Correction s of a point.
 double AcceleratedGradient::correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const {
-  if (is_frozen_) return frozen_[static_cast<Index>(k)];
+  if (is_frozen_) return frozen_[Index(k)];
   return system.points()[k].coefficient * motion.tail<2>().norm();
 }
 
 void AcceleratedGradient::freeze(const ContactSystem& system, const ContactIterate& current, double residual) {
   const std::vector<ContactPoint>& points = system.points();
   is_frozen_ = true;
-  frozen_.resize(static_cast<Index>(points.size()));
+  frozen_.resize(Index(points.size()));
   for (std::size_t k = 0; k < points.size(); ++k)
-    frozen_[static_cast<Index>(k)] = points[k].coefficient * padded(points[k], current.motion).tail<2>().norm();
+    frozen_[Index(k)] = points[k].coefficient * padded(points[k], current.motion).tail<2>().norm();
   target_ = frozen_accuracy * residual;
 }
 
@@ -70,7 +70,7 @@ bool AcceleratedGradient::is_frozen_problem_solved(const ContactSystem& system, 
     const ContactPoint& point = system.points()[k];
     const PaddedVector r = padded(point, current.reaction);
     PaddedVector slope = padded(point, current.motion);
-    slope[0] += frozen_[static_cast<Index>(k)];
+    slope[0] += frozen_[Index(k)];
     const PaddedVector change = r - project(point, PaddedVector(r - slope / point.diagonal));
     if (!(change.norm() * std::sqrt(point.diagonal) <= target_)) return false;
   }

@@ -9,10 +9,10 @@ namespace ricochet {
 void assemble_contact_matrix(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns, Vector& column,
                              Matrix& matrix) {
   const Matrix& w = *system.dense();
-  const auto count = static_cast<Index>(unknowns.size());
+  const auto count = Index(unknowns.size());
   if (matrix.rows() != count) matrix.resize(count, count);
   for (Index j = 0; j < count; ++j) {
-    const ContactUnknown& unknown = unknowns[static_cast<std::size_t>(j)];
+    const ContactUnknown& unknown = unknowns[std::size_t(j)];
     column.setZero(w.rows());
     add_columns(w.rows(), unknown.size, w.data() + unknown.row * w.rows(), w.rows(), unknown.trial.data(),
                 column.data());
@@ -43,9 +43,9 @@ bool ReusedFactor::map_rows(const ContactSystem& system, const std::vector<Conta
   }
   present_ = unknowns;
   same_ = present_ == unknowns_;
-  compliance_.assign(static_cast<std::size_t>(system.rows()), 1.0);
+  compliance_.assign(std::size_t(system.rows()), 1.0);
   for (const ContactPoint& point : system.points()) {
-    for (Index k = 0; k < point.size; ++k) compliance_[static_cast<std::size_t>(point.row + k)] = 1.0 / point.diagonal;
+    for (Index k = 0; k < point.size; ++k) compliance_[std::size_t(point.row + k)] = 1.0 / point.diagonal;
   }
   return true;
 }
@@ -89,30 +89,27 @@ void ReusedFactor::apply(const Vector& right, Vector& z) const {
   }
   const auto add = [](const ContactUnknown& unknown, const std::array<double, 3>& direction, double factor,
                       Vector& to) {
-    for (Index k = 0; k < unknown.size; ++k) to[unknown.row + k] += factor * direction[static_cast<std::size_t>(k)];
+    for (Index k = 0; k < unknown.size; ++k) to[unknown.row + k] += factor * direction[std::size_t(k)];
   };
-  motion_.setZero(static_cast<Index>(compliance_.size()));
-  for (std::size_t i = 0; i < present_.size(); ++i)
-    add(present_[i], present_[i].test, right[static_cast<Index>(i)], motion_);
-  earlier_right_.setZero(static_cast<Index>(unknowns_.size()));
+  motion_.setZero(Index(compliance_.size()));
+  for (std::size_t i = 0; i < present_.size(); ++i) add(present_[i], present_[i].test, right[Index(i)], motion_);
+  earlier_right_.setZero(Index(unknowns_.size()));
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
     const ContactUnknown& unknown = unknowns_[j];
-    earlier_right_[static_cast<Index>(j)] = test_motion(unknown, motion_.data());
+    earlier_right_[Index(j)] = test_motion(unknown, motion_.data());
   }
   // The tests of a point are orthonormal: the part orthogonal to them remains.
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
-    add(unknowns_[j], unknowns_[j].test, -earlier_right_[static_cast<Index>(j)], motion_);
+    add(unknowns_[j], unknowns_[j].test, -earlier_right_[Index(j)], motion_);
   }
   factor_.solve(earlier_right_, earlier_solution_);
   reaction_.resize(motion_.size());
-  for (Index row = 0; row < motion_.size(); ++row)
-    reaction_[row] = compliance_[static_cast<std::size_t>(row)] * motion_[row];
+  for (Index row = 0; row < motion_.size(); ++row) reaction_[row] = compliance_[std::size_t(row)] * motion_[row];
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
-    add(unknowns_[j], unknowns_[j].trial, earlier_solution_[static_cast<Index>(j)], reaction_);
+    add(unknowns_[j], unknowns_[j].trial, earlier_solution_[Index(j)], reaction_);
   }
   z.resize(right.size());
-  for (std::size_t i = 0; i < present_.size(); ++i)
-    z[static_cast<Index>(i)] = test_motion(present_[i], reaction_.data());
+  for (std::size_t i = 0; i < present_.size(); ++i) z[Index(i)] = test_motion(present_[i], reaction_.data());
 }
 
 }  // namespace ricochet

@@ -24,7 +24,7 @@ bool have_one_law(const ContactProblem& problem, const std::vector<Index>& point
 }
 
 double normal_motion(const ContactProblem& problem, const Vector& motion, Index point) {
-  return motion[problem.row_offset[static_cast<std::size_t>(point)]];
+  return motion[problem.row_offset[std::size_t(point)]];
 }
 
 Index deepest_of(const ContactProblem& problem, const Vector& motion, const std::vector<Index>& points) {
@@ -34,7 +34,7 @@ Index deepest_of(const ContactProblem& problem, const Vector& motion, const std:
 }
 
 bool penetrates(const ContactProblem& problem, const Vector& motion, Index point) {
-  const Index row = problem.row_offset[static_cast<std::size_t>(point)];
+  const Index row = problem.row_offset[std::size_t(point)];
   const double offset_rounding = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
   return motion[row] < -(offset_rounding + sum_rounding * std::abs(problem.offset[row]));
 }
@@ -46,7 +46,7 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
   is_analysed_ = true;
   const Matrix& entries = *w.dense();
   const auto rows_of = [&](Index point) {
-    const auto at = static_cast<std::size_t>(point);
+    const auto at = std::size_t(point);
     return std::pair(first[at], first[at + 1] - first[at]);
   };
   const auto are_alike = [&](Index one, Index other) {
@@ -60,7 +60,7 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
     return true;
   };
   std::vector<Group> groups;
-  for (Index point = 0; point + 1 < static_cast<Index>(first.size()); ++point) {
+  for (Index point = 0; point + 1 < Index(first.size()); ++point) {
     const auto own =
         std::ranges::find_if(groups, [&](const Group& group) { return are_alike(group.points.front(), point); });
     if (own != groups.end()) {
@@ -76,14 +76,14 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
 /// Moves the reactions of the group to one point.
 void TwinPoints::replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& selected,
                          Vector& reaction) {
-  const auto at = static_cast<std::size_t>(point);
+  const auto at = std::size_t(point);
   const Index size = problem.row_offset[at + 1] - problem.row_offset[at];
   PointVector sum = PointVector::Zero(size);
   for (const Index other : group.points) {
-    auto part = reaction.segment(problem.row_offset[static_cast<std::size_t>(other)], size);
+    auto part = reaction.segment(problem.row_offset[std::size_t(other)], size);
     sum += part;
     part.setZero();
-    selected[static_cast<std::size_t>(other)] = 0;
+    selected[std::size_t(other)] = 0;
   }
   reaction.segment(problem.row_offset[at], size) = sum;
   selected[at] = 1;
@@ -95,8 +95,7 @@ void TwinPoints::choose(const ContactProblem& problem, const Vector& motion, std
   exchanges_left_ = exchange_limit;
   for (Group& group : groups_) {
     group.chosen = -1;
-    const bool is_in =
-        std::ranges::any_of(group.points, [&](Index k) { return selected[static_cast<std::size_t>(k)]; });
+    const bool is_in = std::ranges::any_of(group.points, [&](Index k) { return selected[std::size_t(k)]; });
     if (is_in && have_one_law(problem, group.points))
       replace(problem, group, deepest_of(problem, motion, group.points), selected, reaction);
   }

@@ -42,7 +42,7 @@ void rotate_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotati
         to.segment<d>(node * d) = from.segment<d>(node * d);
         continue;
       }
-      const Eigen::Matrix<double, d, d> r = rotation[static_cast<std::size_t>(body)].template topLeftCorner<d, d>();
+      const Eigen::Matrix<double, d, d> r = rotation[std::size_t(body)].template topLeftCorner<d, d>();
       const Eigen::Matrix<double, d, 1> value = from.segment<d>(node * d);
       if constexpr (transposed) {
         to.segment<d>(node * d) = r.transpose() * value;
@@ -83,7 +83,7 @@ void CorotatedFrame::visit_rotated(const SparseRowMatrix& rows, const Entry& vis
       Eigen::Vector3d value = Eigen::Vector3d::Zero();
       for (; entry && entry.col() / d == node; ++entry) value[entry.col() % d] = entry.value();
       const int body = bodies_.body_of_node(node);
-      if (body >= 0) value = (rotation_[static_cast<std::size_t>(body)].transpose() * value).eval();
+      if (body >= 0) value = (rotation_[std::size_t(body)].transpose() * value).eval();
       for (int k = 0; k < d; ++k) visit(row, node * d + k, value[k]);
     }
   }
@@ -101,10 +101,9 @@ void CorotatedFrame::rotate_back(const SparseRowMatrix& rows, SparseRowMatrix& r
     if (same && at == result.nonZeros()) return;
   }
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(rows.nonZeros() * problem_.dimension));
-  visit_rotated(rows, [&](Index row, Index column, double value) {
-    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
-  });
+  entries.reserve(std::size_t(rows.nonZeros() * problem_.dimension));
+  visit_rotated(rows,
+                [&](Index row, Index column, double value) { entries.emplace_back(int(row), int(column), value); });
   result.resize(rows.rows(), rows.cols());
   result.setFromTriplets(entries.begin(), entries.end());
 }

@@ -27,7 +27,7 @@ class CorotatedStage final : public StageSolver {
   /// Renews the rows if the frame has rotated or the rows of the stage have another revision: all of them, with a new
   /// revision for those that changed.
   void update_rows(const ContactRows& rows) {
-    const auto points = static_cast<std::size_t>(rows.size());
+    const auto points = std::size_t(rows.size());
     const bool follows = !rows.revision.empty();
     const bool same_frame = rows_ != nullptr && frame_number_ == frame_.number();
     if (same_frame && (follows ? source_revision_ == rows.revision : source_ == &rows)) return;

@@ -27,13 +27,13 @@ constexpr int patience = 100;
 
 void ContactCandidates::add_candidates(const std::vector<Index>& points) {
   for (const Index point : points) {
-    number_[static_cast<std::size_t>(point)] = static_cast<Index>(points_.size());
+    number_[std::size_t(point)] = Index(points_.size());
     points_.push_back(point);
   }
 }
 
 void ContactCandidates::clear() {
-  for (const Index point : points_) number_[static_cast<std::size_t>(point)] = -1;
+  for (const Index point : points_) number_[std::size_t(point)] = -1;
   points_.clear();
   oversized_stages_ = 0;
 }
@@ -41,21 +41,21 @@ void ContactCandidates::clear() {
 void ContactCandidates::persist_history(const SnapshotVisitor& visit) {
   visit("largest_motion", largest_motion_);
   visit("oversized_stages", oversized_stages_);
-  visit("closed", closed_, {0, static_cast<Index>(number_.size())});
+  visit("closed", closed_, {0, Index(number_.size())});
 }
 
 /// Uses the motion of earlier stages, or that which this one requires if points are inside at δ = 0.
 void ContactCandidates::estimate_reach(const ContactConditions& conditions) {
   double deepest = 0.0;
   for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
-    if (conditions.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -conditions.gap.offset[i]);
+    if (conditions.eligible[std::size_t(i)] != 0) deepest = std::max(deepest, -conditions.gap.offset[i]);
   }
   reach_ = reserve * std::max(ranks_->maximum(deepest), conditions.gap.factor * largest_motion_);
 }
 
 bool ContactCandidates::is_below(const ContactConditions& conditions, Index point, double limit,
                                  bool candidates) const {
-  const auto at = static_cast<std::size_t>(point);
+  const auto at = std::size_t(point);
   return conditions.eligible[at] != 0 && (number_[at] >= 0) == candidates && conditions.gap.offset[point] <= limit;
 }
 
@@ -67,7 +67,7 @@ std::size_t ContactCandidates::count_below(const ContactConditions& conditions, 
 
 bool ContactCandidates::some_may_touch(const ContactConditions& conditions) const {
   for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
-    if (conditions.eligible[static_cast<std::size_t>(i)] != 0 && conditions.gap.offset[i] <= reach_) return true;
+    if (conditions.eligible[std::size_t(i)] != 0 && conditions.gap.offset[i] <= reach_) return true;
   }
   return false;
 }
@@ -84,10 +84,10 @@ std::vector<Index> ContactCandidates::nearest(const ContactConditions& condition
   const double limit = ahead * reach_;
   std::vector<Index> result;
   for (Index i = 0; i < conditions.gap.offset.size(); ++i) {
-    if (conditions.eligible[static_cast<std::size_t>(i)] != 0 && conditions.gap.offset[i] <= limit) result.push_back(i);
+    if (conditions.eligible[std::size_t(i)] != 0 && conditions.gap.offset[i] <= limit) result.push_back(i);
   }
   if (result.size() <= max_count()) return result;
-  const auto last = result.begin() + static_cast<std::ptrdiff_t>(max_count());
+  const auto last = result.begin() + std::ptrdiff_t(max_count());
   std::nth_element(result.begin(), last, result.end(), [&](Index a, Index b) {
     return std::pair(conditions.gap.offset[a], a) < std::pair(conditions.gap.offset[b], b);
   });
@@ -109,7 +109,7 @@ std::vector<Index> ContactCandidates::penetrating(const ContactConditions& condi
   double deepest = 0.0;
   const auto gap = [&](Index point) { return conditions.gap.offset[point] + conditions.gap.factor * motion[point]; };
   for (Index i = 0; i < motion.size(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     const bool was_included = number_[at] >= 0 && !left_out;
     if (conditions.eligible[at] == 0 || was_included || !(gap(i) < -conditions.gap.rounding[i])) continue;
     result.push_back(i);
@@ -125,8 +125,7 @@ void ContactCandidates::update_history(const ContactConditions& conditions, cons
   closed_ = closed;
   largest_motion_ = 0.0;
   for (Index i = 0; i < motion.size(); ++i) {
-    if (conditions.eligible[static_cast<std::size_t>(i)] != 0)
-      largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
+    if (conditions.eligible[std::size_t(i)] != 0) largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
   }
   largest_motion_ = ranks_->maximum(largest_motion_);
 }

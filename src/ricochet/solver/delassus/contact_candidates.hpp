@@ -14,12 +14,12 @@ namespace ricochet {
 class ContactCandidates {
  public:
   explicit ContactCandidates(Index points, const Ranks& ranks = one_rank())
-      : ranks_(&ranks), number_(static_cast<std::size_t>(points), -1) {}
+      : ranks_(&ranks), number_(std::size_t(points), -1) {}
 
   /// Candidates in the order in which they were added.
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
   /// Index of a point among them, or −1.
-  [[nodiscard]] Index number(Index point) const { return number_[static_cast<std::size_t>(point)]; }
+  [[nodiscard]] Index number(Index point) const { return number_[std::size_t(point)]; }
   void add_candidates(const std::vector<Index>& points);
   void clear();
 

@@ -39,7 +39,7 @@ void DelassusColumns::clear() {
 
 std::size_t DelassusColumns::entries() const {
   std::size_t sum = 0;
-  for (const Block& block : blocks_) sum += static_cast<std::size_t>(block.columns.size());
+  for (const Block& block : blocks_) sum += std::size_t(block.columns.size());
   return sum;
 }
 
@@ -47,7 +47,7 @@ std::size_t DelassusColumns::entries() const {
 void DelassusColumns::fill(Block& block, const SparseMatrix& transposed, Index begin) const {
   const auto on_path = [&](Index row) {
     const auto& first = block.path.first;
-    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(first, row) - first.begin()) - 1;
+    const auto k = std::size_t(std::ranges::upper_bound(first, row) - first.begin()) - 1;
     return block.path.offsets[k] + row - first[k];
   };
   block.columns.setZero();

@@ -25,7 +25,7 @@ DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector
       columns_(factor),
       massless_nodes_(std::move(massless_nodes)) {
   contact_.reaction_scale = scale_;
-  std::vector<Index> points(shared.all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
+  std::vector<Index> points(shared.all_points ? std::size_t(problem.contact.size()) : 0);
   std::iota(points.begin(), points.end(), Index{0});
   start_again_with(points);
 }
@@ -84,7 +84,7 @@ void DelassusProblem::sort_by_tree_position(std::vector<Index>& points) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     order[i] = i;
     visit_rows(points[i], [&](Index, Index dof, double) {
-      const int unknown = unknown_[static_cast<std::size_t>(dof)];
+      const int unknown = unknown_[std::size_t(dof)];
       if (unknown >= 0) position[i] = std::max(position[i], factor_.factor_index(unknown));
     });
   }
@@ -104,15 +104,15 @@ void DelassusProblem::add_candidates(std::vector<Index> points) {
 void DelassusProblem::append_candidates(const std::vector<Index>& points) {
   Vector start = solver_ != nullptr ? contact_solution_.reaction : Vector();
   candidates_.add_candidates(points);
-  candidate_counts_.push_back(static_cast<Index>(candidates_.points().size()));
+  candidate_counts_.push_back(Index(candidates_.points().size()));
   Matrix w = release_column_product();
   append_columns(points, w);
   append_supported();
-  const auto count = static_cast<Index>(candidates_.points().size());
+  const auto count = Index(candidates_.points().size());
   coefficient_.resize(count);
   bound_.resize(count);
   for (Index i = 0; i < count; ++i) {
-    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    const Index point = candidates_.points()[std::size_t(i)];
     coefficient_[i] = problem_.contact.friction_coefficient[point];
     bound_[i] = scale_ * problem_.contact.friction_bound[point];
   }
@@ -121,7 +121,7 @@ void DelassusProblem::append_candidates(const std::vector<Index>& points) {
   contact_.friction_bound = bound_;
   contact_.offset.setZero(contact_.row_offset.back());
   contact_.offset_rounding.setZero(contact_.row_offset.back());
-  contact_.eligible.assign(static_cast<std::size_t>(count), 1);
+  contact_.eligible.assign(std::size_t(count), 1);
   set_contact_operator(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
@@ -137,14 +137,14 @@ void DelassusProblem::persist(const SnapshotVisitor& visit) {
   std::vector<Index> points = candidates_.points(), counts = candidate_counts_;
   double scale = scale_;
   visit("candidates", points, {0, problem_.contact.size() - 1});
-  visit("taken_up", counts, {1, static_cast<Index>(points.size())});
+  visit("taken_up", counts, {1, Index(points.size())});
   visit("scale", scale);
   if (visit.loads()) {
     // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
     scale_ = contact_.reaction_scale = factor_.scale();
     start_again_with({});
     for (const Index end : counts) {
-      const auto begin = static_cast<Index>(candidates_.points().size());
+      const auto begin = Index(candidates_.points().size());
       if (end > begin) append_candidates({points.begin() + begin, points.begin() + end});
     }
   }
@@ -165,8 +165,8 @@ SparseMatrix DelassusProblem::transposed_columns(const std::vector<Index>& point
   Index row = 0;
   for (const Index point : points) {
     visit_columns(point, [&](Index k, Index dof, double value) {
-      const int unknown = number[static_cast<std::size_t>(dof)];
-      if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
+      const int unknown = number[std::size_t(dof)];
+      if (unknown >= 0) entries.emplace_back(unknown, int(row + k), value);
     });
     row += rotates(point) ? problem_.dimension : rows_of(point);
   }
@@ -179,7 +179,7 @@ void DelassusProblem::append_columns(const std::vector<Index>& points, Matrix& w
   for (const Index point : points) {
     contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
     rotating_rows_.append(*rows_, point, rows_of(point), rotates(point));
-    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[static_cast<std::size_t>(point)]);
+    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[std::size_t(point)]);
   }
   columns_.append(transposed_columns(points, unknown_, factor_.size()), w);
   if (massless_nodes_)
@@ -193,8 +193,7 @@ void DelassusProblem::append_supported() {
     visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
       const auto support = std::ranges::lower_bound(dofs, dof);
       if (support == dofs.end() || *support != dof) return;
-      entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(support - dofs.begin()),
-                           value);
+      entries.emplace_back(int(contact_.row_offset[i] + k), int(support - dofs.begin()), value);
     });
   }
   supported_.resize(contact_.row_offset.back(), problem_.supports.size());
@@ -228,7 +227,7 @@ void DelassusProblem::solve(const LinearStage& stage, Vector& y, StageSolution& 
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
-  solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+  solution.contact_status.assign(std::size_t(points), ContactStatus::open);
   candidates_active_ = false;
   iterations_ = 0;
   solution.clear_mean();
@@ -269,7 +268,7 @@ void DelassusProblem::write_solution(const LinearStage& stage, StageSolution& so
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i];
     const Index row = contact_.row_offset[i];
-    solution.contact_status[static_cast<std::size_t>(point)] = contact_solution_.status[i];
+    solution.contact_status[std::size_t(point)] = contact_solution_.status[i];
     solution.normal_reaction[point] = reaction[row] / scale_;
     for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
@@ -301,12 +300,12 @@ std::size_t DelassusProblem::closed_points() const {
 /// Sets friction in stages that have a slip rate, at points where these do not leave it out.
 void DelassusProblem::choose_friction(const LinearStage& stage) {
   for (std::size_t i = 0; i < candidates_.points().size(); ++i)
-    contact_.eligible[i] = stage.conditions.eligible[static_cast<std::size_t>(candidates_.points()[i])];
+    contact_.eligible[i] = stage.conditions.eligible[std::size_t(candidates_.points()[i])];
   if (!friction_) return;
   contact_.friction_coefficient = coefficient_;
   contact_.friction_bound = bound_;
   for (Index i = 0; i < coefficient_.size(); ++i) {
-    const auto point = static_cast<std::size_t>(candidates_.points()[static_cast<std::size_t>(i)]);
+    const auto point = std::size_t(candidates_.points()[std::size_t(i)]);
     const bool left_out = !stage.conditions.frictionless.empty() && stage.conditions.frictionless[point] != 0;
     if (stage.conditions.slip.offset.size() > 0 && !left_out) continue;
     contact_.friction_coefficient[i] = 0.0;

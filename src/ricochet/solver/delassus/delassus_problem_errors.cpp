@@ -21,13 +21,13 @@ void DelassusProblem::throw_contradiction(const std::vector<Index>& contradictio
   std::set<std::string> positions, contacts;
   bool between_bodies = false;
   for (const Index candidate : contradiction) {
-    const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
+    const Index point = candidates_.points()[std::size_t(candidate)];
     Vector at = Vector::Zero(problem_.dimension);
     problem_.contact.visit_own_nodes(point,
                                      [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
     positions.insert(as_text(at));
     between_bodies = between_bodies || problem_.contact.between_bodies(point);
-    contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
+    contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[std::size_t(point)],
                                 as_text(rows_->normals.col(point))));
   }
   constexpr std::size_t shown = 3;

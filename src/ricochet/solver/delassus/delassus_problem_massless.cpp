@@ -20,7 +20,7 @@ void DelassusProblem::set_rows(const LinearStage& stage) {
   std::vector<char> is_new(static_cast<std::size_t>(rotating_rows_.size()), all_new ? 1 : 0);
   bool any = all_new, have_columns = !all_new;
   for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
-    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
+    const long revision = rows_->revision[std::size_t(candidates_.points()[i])];
     if (revision == revision_[i]) continue;
     revision_[i] = revision;
     any = true;
@@ -130,11 +130,11 @@ void DelassusProblem::solve_mean(const LinearStage& stage) {
   const Index tangents = problem_.dimension - 1;
   Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
   for (Index i = 0; i < contact_.points(); ++i) {
-    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
-    const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
+    const Index point = candidates_.points()[std::size_t(i)];
+    const Index row = contact_.row_offset[std::size_t(i)];
     start_gap[i] = stage.start.gap[point] / stage.conditions.gap.factor;
     start[row] = scale_ * stage.start.normal_reaction[point];
-    for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
+    for (Index k = 1; row + k < contact_.row_offset[std::size_t(i) + 1]; ++k)
       start[row + k] = -scale_ * stage.start.tangential_reaction[point * tangents + k - 1];
   }
   const Vector offset = contact_.offset;

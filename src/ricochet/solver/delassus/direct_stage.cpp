@@ -10,7 +10,7 @@ namespace {
 
 /// Restricts A to some dofs; empties `matrix` if these are all.
 SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs, SparseMatrix& matrix) {
-  const auto count = static_cast<Index>(dofs.size());
+  const auto count = Index(dofs.size());
   SparseMatrix result;
   if (count == problem.dof_count()) {
     result.swap(matrix);

@@ -12,8 +12,7 @@ namespace {
 SparseCholesky factorized(SparseCholesky factor, const SemidiscreteProblem& problem,
                           const OperatorCoefficients& coefficients, const std::vector<int>& dofs) {
   factor.factorize();
-  if (!factor.positive_definite())
-    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor.failed_unknown())]);
+  if (!factor.positive_definite()) refuse_operator(problem, coefficients, dofs[std::size_t(factor.failed_unknown())]);
   return factor;
 }
 
@@ -29,7 +28,7 @@ FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorC
                    ? std::make_unique<MasslessContactNodes>(problem, coefficients, *condensed_stage)
                    : nullptr) {
   dof_at_.reserve(dofs.size());
-  for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
+  for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[std::size_t(unknown)]);
   factor_vector_.setZero(factor_.work_size());
   shared_.factor_entries += factor_.factor_entries();
 }
@@ -39,9 +38,8 @@ void FactoredStage::refactorize(const SemidiscreteProblem& problem, const Operat
   factor_.refactorize(matrix);
   if (!factor_.positive_definite()) {
     std::vector<int> dofs(dof_at_.size());
-    for (std::size_t i = 0; i < dof_at_.size(); ++i)
-      dofs[static_cast<std::size_t>(factor_.permutation()[i])] = dof_at_[i];
-    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor_.failed_unknown())]);
+    for (std::size_t i = 0; i < dof_at_.size(); ++i) dofs[std::size_t(factor_.permutation()[i])] = dof_at_[i];
+    refuse_operator(problem, coefficients, dofs[std::size_t(factor_.failed_unknown())]);
   }
   contact_.invalidate_columns();
 }
@@ -52,12 +50,11 @@ void FactoredStage::solve(const LinearStage& stage, const Vector& right_hand_sid
   if (!factor_.positive_definite()) throw std::logic_error("a stage is solved although its operator was refused");
   const double scale = factor_.scale();
   do {
-    for (std::size_t i = 0; i < dof_at_.size(); ++i)
-      factor_vector_[static_cast<Index>(i)] = scale * right_hand_side[dof_at_[i]];
+    for (std::size_t i = 0; i < dof_at_.size(); ++i) factor_vector_[Index(i)] = scale * right_hand_side[dof_at_[i]];
     factor_.solve_lower(factor_vector_);
     contact_.solve(stage, factor_vector_, solution);
     factor_.solve_upper(factor_vector_);
-    for (std::size_t i = 0; i < dof_at_.size(); ++i) increment[dof_at_[i]] = factor_vector_[static_cast<Index>(i)];
+    for (std::size_t i = 0; i < dof_at_.size(); ++i) increment[dof_at_[i]] = factor_vector_[Index(i)];
   } while (contact_.add_penetrating(stage, increment, solution));
 }
 

@@ -46,10 +46,10 @@ void MasslessContactNodes::find_motion(const ContactRows& rows, const StageSolut
   force_.setZero(problem_.dof_count());
   rows.add_force(normal_, tangential_, force_);
   const double scale = 0.5 * factor_.scale();
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) factor_vector_[static_cast<Index>(i)] = scale * force_[dof_at_[i]];
+  for (std::size_t i = 0; i < dof_at_.size(); ++i) factor_vector_[Index(i)] = scale * force_[dof_at_[i]];
   factor_.solve_lower(factor_vector_);
   factor_.solve_upper(factor_vector_);
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) motion[dof_at_[i]] -= factor_vector_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < dof_at_.size(); ++i) motion[dof_at_[i]] -= factor_vector_[Index(i)];
 }
 
 }  // namespace ricochet

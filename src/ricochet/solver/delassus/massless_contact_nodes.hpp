@@ -59,8 +59,7 @@ inline std::vector<Index> pressing_at_start(ActingReaction acting, const LinearS
   std::vector<Index> result;
   if (acting == ActingReaction::end) return result;
   for (Index i = 0; i < stage.start.normal_reaction.size(); ++i) {
-    if (stage.start.normal_reaction[i] > 0.0 && stage.conditions.eligible[static_cast<std::size_t>(i)] != 0)
-      result.push_back(i);
+    if (stage.start.normal_reaction[i] > 0.0 && stage.conditions.eligible[std::size_t(i)] != 0) result.push_back(i);
   }
   return result;
 }

@@ -43,16 +43,15 @@ void add_reactions(const StageSolution& part, StageSolution& solution) {
 GatheredContact::GatheredContact(const SemidiscreteProblem& problem, std::size_t root_index)
     : problem_(problem), d_(problem.dimension) {
   const Ranks& ranks = *problem.ranks;
-  const auto size = static_cast<std::size_t>(ranks.size());
-  Ranks::ForEach<std::int64_t> sent(size, {static_cast<std::int64_t>(problem.contact.size())});
+  const auto size = std::size_t(ranks.size());
+  Ranks::ForEach<std::int64_t> sent(size, {std::int64_t(problem.contact.size())});
   first_.assign(1, 0);
   const Ranks::ForEach<std::int64_t> counts = ranks.exchange(std::move(sent));
   for (const std::vector<std::int64_t>& count : counts) first_.push_back(first_.back() + count.front());
   std::vector<int> by_points(size);
   std::iota(by_points.begin(), by_points.end(), 0);
-  std::ranges::stable_sort(by_points, [&](int a, int b) {
-    return counts[static_cast<std::size_t>(a)].front() > counts[static_cast<std::size_t>(b)].front();
-  });
+  std::ranges::stable_sort(
+      by_points, [&](int a, int b) { return counts[std::size_t(a)].front() > counts[std::size_t(b)].front(); });
   nodes_ = GatheredNodes(ranks, by_points.at(root_index), named_by_all(problem.contact.unique_nodes()));
   gather_boundary();
 }
@@ -73,9 +72,9 @@ void GatheredContact::gather_values(const std::vector<Index>& points, const Valu
                                     Values& at_root) const {
   const Ranks& ranks = *problem_.ranks;
   Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks.size()));
-  std::vector<double>& message = sent[static_cast<std::size_t>(nodes_.root())];
-  message.push_back(static_cast<double>(points.size()));
-  for (const Index point : points) message.push_back(static_cast<double>(point));
+  std::vector<double>& message = sent[std::size_t(nodes_.root())];
+  message.push_back(double(points.size()));
+  for (const Index point : points) message.push_back(double(point));
   PointWriter writer(ranks, d_, points, message);
   persist(writer, values);
   const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
@@ -84,7 +83,7 @@ void GatheredContact::gather_values(const std::vector<Index>& points, const Valu
   for (std::size_t rank = 0; rank < received.size(); ++rank) {
     NumberReader numbers(received[rank]);
     std::vector<Index> own(static_cast<std::size_t>(numbers.integer()));
-    for (Index& point : own) point = number(static_cast<int>(rank), numbers.integer());
+    for (Index& point : own) point = number(int(rank), numbers.integer());
     parts.push_back({numbers, std::move(own)});
   }
   PointReader reader(d_, point_count(), nodes_, keeps, std::move(parts));
@@ -112,7 +111,7 @@ void GatheredContact::gather_rows(const ContactRows& rows) {
   const bool is_first = changes_++ == 0;
   std::vector<Index> changed;
   for (Index point = 0; point < rows.size(); ++point) {
-    const auto at = static_cast<std::size_t>(point);
+    const auto at = std::size_t(point);
     if (is_first || rows.revision[at] != revision_[at]) changed.push_back(point);
   }
   revision_ = rows.revision;
@@ -147,7 +146,7 @@ std::unique_ptr<SemidiscreteProblem> GatheredContact::make_problem(const Gathere
   result->contact.rows = rows_on(*rows_, result->dof_count());
   result->contact_dofs = contact_dofs_;
   result->obstacles = problem_.obstacles;
-  result->is_massless.assign(static_cast<std::size_t>(result->dof_count()), 0);
+  result->is_massless.assign(std::size_t(result->dof_count()), 0);
   return result;
 }
 
@@ -172,21 +171,21 @@ void GatheredContact::gather(const LinearStage& stage, const Vector& x, const st
 
 void GatheredContact::scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution) {
   const Ranks& ranks = *problem_.ranks;
-  const auto size = static_cast<std::size_t>(ranks.size());
+  const auto size = std::size_t(ranks.size());
   Ranks::ForEach<std::int64_t> requested(size);
-  requested[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
+  requested[std::size_t(nodes_.root())].assign(points.begin(), points.end());
   const Ranks::ForEach<std::int64_t> requests = ranks.exchange(std::move(requested));
   Ranks::ForEach<double> sent(size);
   for (std::size_t rank = 0; is_root() && rank < size; ++rank) {
     std::vector<Index> of_rank;
-    for (const std::int64_t point : requests[rank]) of_rank.push_back(number(static_cast<int>(rank), point));
-    sent[rank] = {static_cast<double>(at_root.iterations), at_root.end_weight};
+    for (const std::int64_t point : requests[rank]) of_rank.push_back(number(int(rank), point));
+    sent[rank] = {double(at_root.iterations), at_root.end_weight};
     PointWriter writer(ranks, d_, of_rank, sent[rank]);
     persist(writer, at_root);
   }
   const Ranks::ForEach<double> received = ranks.exchange(std::move(sent));
-  NumberReader numbers(received[static_cast<std::size_t>(nodes_.root())]);
-  solution.iterations += static_cast<int>(numbers.integer());
+  NumberReader numbers(received[std::size_t(nodes_.root())]);
+  solution.iterations += int(numbers.integer());
   solution.end_weight = numbers.next();
   PointReader reader(d_, problem_.contact.size(), nodes_, false, {{numbers, points}});
   persist(reader, received_solution_);

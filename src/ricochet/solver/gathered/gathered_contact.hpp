@@ -39,7 +39,7 @@ class GatheredContact {
   void scatter(const StageSolution& at_root, const std::vector<Index>& points, StageSolution& solution);
 
   /// Number, at the root, of a point of a rank.
-  [[nodiscard]] Index number(int rank, Index point) const { return first_[static_cast<std::size_t>(rank)] + point; }
+  [[nodiscard]] Index number(int rank, Index point) const { return first_[std::size_t(rank)] + point; }
   [[nodiscard]] Index point_count() const { return first_.back(); }
 
  private:

@@ -9,11 +9,11 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vecto
     : ranks_(&ranks), root_(root_rank), nodes_(nodes) {
   std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-  const auto size = static_cast<std::size_t>(ranks.size());
+  const auto size = std::size_t(ranks.size());
   Ranks::ForEach<std::int64_t> sent(size), sent_owned(size);
   for (const Index node : nodes_) {
-    sent[static_cast<std::size_t>(root_rank)].push_back(ranks.number_of(node));
-    sent_owned[static_cast<std::size_t>(root_rank)].push_back(ranks.is_owned(node) ? 1 : 0);
+    sent[std::size_t(root_rank)].push_back(ranks.number_of(node));
+    sent_owned[std::size_t(root_rank)].push_back(ranks.is_owned(node) ? 1 : 0);
     if (ranks.is_owned(node)) owned_.push_back(node);
   }
   const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(sent));
@@ -30,8 +30,7 @@ GatheredNodes::GatheredNodes(const Ranks& ranks, int root_rank, const std::vecto
   std::ranges::sort(others);
   others.erase(std::unique(others.begin(), others.end()), others.end());
   numbers_.insert(numbers_.end(), others.begin(), others.end());
-  for (std::size_t index = 0; index < numbers_.size(); ++index)
-    index_.emplace_back(numbers_[index], static_cast<Index>(index));
+  for (std::size_t index = 0; index < numbers_.size(); ++index) index_.emplace_back(numbers_[index], Index(index));
   std::ranges::sort(index_);
   indices_.resize(size);
   owned_indices_.resize(size);
@@ -50,7 +49,7 @@ Index GatheredNodes::index_of(std::int64_t number) const {
 
 Vector GatheredNodes::gather(const Vector& values, int per_node) const {
   Ranks::ForEach<double> sent(static_cast<std::size_t>(ranks_->size()));
-  std::vector<double>& own = sent[static_cast<std::size_t>(root_)];
+  std::vector<double>& own = sent[std::size_t(root_)];
   for (const Index node : owned_)
     own.insert(own.end(), values.data() + node * per_node, values.data() + (node + 1) * per_node);
   const Ranks::ForEach<double> received = ranks_->exchange(std::move(sent));
@@ -73,7 +72,7 @@ void GatheredNodes::scatter(const Vector& at_root, int per_node, Vector& values)
       sent[rank].insert(sent[rank].end(), at_root.data() + index * per_node, at_root.data() + (index + 1) * per_node);
   }
   const Ranks::ForEach<double> received = ranks_->exchange(std::move(sent));
-  const double* from = received[static_cast<std::size_t>(root_)].data();
+  const double* from = received[std::size_t(root_)].data();
   for (const Index node : nodes_) {
     std::copy_n(from, per_node, values.data() + node * per_node);
     from += per_node;

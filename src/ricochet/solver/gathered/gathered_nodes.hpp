@@ -22,7 +22,7 @@ class GatheredNodes {
   /// Nodes of this rank, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   /// Number of nodes of all ranks, at the root; elsewhere 0.
-  [[nodiscard]] Index count() const { return static_cast<Index>(numbers_.size()); }
+  [[nodiscard]] Index count() const { return Index(numbers_.size()); }
   /// Index, at the root, of a node with this number in the whole body, or −1.
   [[nodiscard]] Index index_of(std::int64_t number) const;
 

@@ -67,8 +67,8 @@ SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTe
   std::vector<int> row, column;
   for (const Index node : nodes) {
     for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
-      row.push_back(supports[static_cast<std::size_t>(dof)]);
-      column.push_back(static_cast<int>(dof));
+      row.push_back(supports[std::size_t(dof)]);
+      column.push_back(int(dof));
     }
   }
   return extract(terms.principal(nodes), row, problem.supports.size(), column, problem.dof_count());
@@ -90,7 +90,7 @@ GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorC
     analysed.dofs = solved_dofs(*root_problem_, StageDofs::contact);
     analysed.supported.resize(0, root_problem_->dof_count());
     const std::vector<int> number = number_dofs(*root_problem_, analysed.dofs);
-    const auto count = static_cast<Index>(analysed.dofs.size());
+    const auto count = Index(analysed.dofs.size());
     analysed.factor.analyse(extract(gathered, number, count, number, count));
     stage_ = make_direct_stage(*root_problem_, coefficients, std::move(analysed), shared);
   });
@@ -107,7 +107,7 @@ void GatheredStage::solve(const LinearStage& stage, StageSolution& solution) {
   ranks.accumulate(right_hand_side_);
   points_.clear();
   for (Index point = 0; point < problem_.contact.size(); ++point) {
-    if (stage.conditions.eligible[static_cast<std::size_t>(point)] != 0) points_.push_back(point);
+    if (stage.conditions.eligible[std::size_t(point)] != 0) points_.push_back(point);
   }
   contact_.gather(stage, prescribed_, points_, root_stage_);
   root_stage_.right_hand_side.force = contact_.nodes().gather(right_hand_side_, d);

@@ -65,7 +65,7 @@ class GatheredSubdomains final : public ContactRegion {
 
 /// Chooses the roots of so many subdomains.
 void GatheredSubdomains::choose_roots(std::size_t subdomain_count) {
-  const auto ranks = static_cast<std::size_t>(body_.problem.ranks->size());
+  const auto ranks = std::size_t(body_.problem.ranks->size());
   active_ = std::min({subdomain_count, ranks, max_roots});
   while (roots_.size() < active_) {
     auto contact = std::make_unique<GatheredContact>(body_.problem, roots_.size());
@@ -85,7 +85,7 @@ void GatheredSubdomains::make(const std::vector<Index>& points) {
   roots_.front().subdomains->gather_body(points, region);
   std::size_t subdomain_count = 0;
   ranks.run_collectively([&] { subdomain_count = roots_.front().subdomains->partition_on_root(); });
-  choose_roots(static_cast<std::size_t>(ranks.maximum(static_cast<double>(subdomain_count))));
+  choose_roots(std::size_t(ranks.maximum(double(subdomain_count))));
   for (std::size_t i = 1; i < active_; ++i) roots_[i].subdomains->gather_body(points, region);
   ranks.run_collectively([&] {
     for (std::size_t i = 0; i < active_; ++i) {

@@ -22,7 +22,7 @@ class NumberReader {
  public:
   explicit NumberReader(const std::vector<double>& numbers) : at_(numbers.data()) {}
   double next() { return *at_++; }
-  Index integer() { return static_cast<Index>(next()); }
+  Index integer() { return Index(next()); }
 
  private:
   const double* at_;
@@ -78,21 +78,21 @@ class PointWriter : private PointMembers {
   void append(ContactAxes, const Vector& values, Index item) { message_.push_back(values[item]); }
   template <Sendable Number>
   void append(ContactAxes, const std::vector<Number>& values, Index item) {
-    message_.push_back(static_cast<double>(values[static_cast<std::size_t>(item)]));
+    message_.push_back(double(values[std::size_t(item)]));
   }
   void append(ContactAxes, const Points& values, Index item) {
     for (Index k = 0; k < values.rows(); ++k) message_.push_back(values(k, item));
   }
   void append(ContactAxes, const std::vector<Points>& values, Index item) {
-    const Points& own = values[static_cast<std::size_t>(item)];
+    const Points& own = values[std::size_t(item)];
     message_.insert(message_.end(), own.data(), own.data() + own.size());
   }
   /// Appends the number of entries, and column in the whole body and value of each.
   void append(ContactAxes axes, const SparseRowMatrix& matrix, Index row) {
     const Index d = per_node(axes);
-    message_.push_back(static_cast<double>(matrix.outerIndexPtr()[row + 1] - matrix.outerIndexPtr()[row]));
+    message_.push_back(double(matrix.outerIndexPtr()[row + 1] - matrix.outerIndexPtr()[row]));
     for (SparseRowMatrix::InnerIterator entry(matrix, row); entry; ++entry) {
-      message_.push_back(static_cast<double>(ranks_.number_of(entry.col() / d) * d + entry.col() % d));
+      message_.push_back(double(ranks_.number_of(entry.col() / d) * d + entry.col() % d));
       message_.push_back(entry.value());
     }
   }
@@ -137,17 +137,16 @@ class PointReader : private PointMembers {
     std::vector<Eigen::Triplet<double>> entries;
     const Index d = per_node(axes);
     visit_parts(axes, read_flags(), [&](NumberReader& numbers, Index row) {
-      is_new[static_cast<std::size_t>(row)] = 1;
+      is_new[std::size_t(row)] = 1;
       for (Index count = numbers.integer(); count > 0; --count) {
         const Index column = numbers.integer();
-        entries.emplace_back(static_cast<int>(row), static_cast<int>(nodes_.index_of(column / d) * d + column % d),
-                             numbers.next());
+        entries.emplace_back(int(row), int(nodes_.index_of(column / d) * d + column % d), numbers.next());
       }
     });
     for (Index row = 0; keeps_ && row < matrix.rows(); ++row) {
-      if (is_new[static_cast<std::size_t>(row)] != 0) continue;
+      if (is_new[std::size_t(row)] != 0) continue;
       for (SparseRowMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-        entries.emplace_back(static_cast<int>(row), static_cast<int>(entry.col()), entry.value());
+        entries.emplace_back(int(row), int(entry.col()), entry.value());
     }
     matrix = SparseRowMatrix(count_ * per_point(axes), nodes_.count() * d);
     matrix.setFromTriplets(entries.begin(), entries.end());
@@ -169,22 +168,22 @@ class PointReader : private PointMembers {
   static void clear(Vector& values, Index size) { values.setZero(size); }
   void clear(Points& values, Index size) const { values.setZero(d_, size); }
   void clear(std::vector<Points>& values, Index size) const {
-    values.assign(static_cast<std::size_t>(size), Points::Zero(d_, d_ - 1));
+    values.assign(std::size_t(size), Points::Zero(d_, d_ - 1));
   }
   template <Sendable Number>
   static void clear(std::vector<Number>& values, Index size) {
-    values.assign(static_cast<std::size_t>(size), Number{});
+    values.assign(std::size_t(size), Number{});
   }
   static void enter(NumberReader& numbers, Vector& values, Index item) { values[item] = numbers.next(); }
   static void enter(NumberReader& numbers, Points& values, Index item) {
     for (Index k = 0; k < values.rows(); ++k) values(k, item) = numbers.next();
   }
   static void enter(NumberReader& numbers, std::vector<Points>& values, Index item) {
-    for (double& value : values[static_cast<std::size_t>(item)].reshaped()) value = numbers.next();
+    for (double& value : values[std::size_t(item)].reshaped()) value = numbers.next();
   }
   template <Sendable Number>
   static void enter(NumberReader& numbers, std::vector<Number>& values, Index item) {
-    values[static_cast<std::size_t>(item)] = static_cast<Number>(numbers.next());
+    values[std::size_t(item)] = static_cast<Number>(numbers.next());
   }
 
   Index count_;

@@ -9,11 +9,11 @@ namespace ricochet {
 std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& points) const {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> sent(static_cast<std::size_t>(ranks.size()));
-  sent[static_cast<std::size_t>(nodes_.root())].assign(points.begin(), points.end());
+  sent[std::size_t(nodes_.root())].assign(points.begin(), points.end());
   const Ranks::ForEach<std::int64_t> received = ranks.exchange(std::move(sent));
   std::vector<Index> result;
   for (std::size_t rank = 0; rank < received.size(); ++rank) {
-    for (const std::int64_t point : received[rank]) result.push_back(contact_.number(static_cast<int>(rank), point));
+    for (const std::int64_t point : received[rank]) result.push_back(contact_.number(int(rank), point));
   }
   return result;
 }
@@ -22,7 +22,7 @@ std::vector<Index> RootSubdomains::gather_points(const std::vector<Index>& point
 MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   const Ranks& ranks = *body_.problem.ranks;
   Ranks::ForEach<std::int64_t> sent(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::int64_t>& message = sent[static_cast<std::size_t>(nodes_.root())];
+  std::vector<std::int64_t>& message = sent[std::size_t(nodes_.root())];
   for (const Index node : nodes) {
     for (const int other : body_.neighbourhood.graph().neighbours(node)) {
       if (!std::ranges::binary_search(nodes, Index{other})) continue;
@@ -35,8 +35,7 @@ MatrixGraph RootSubdomains::gather_graph(const std::vector<Index>& nodes) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const std::vector<std::int64_t>& pairs : received) {
     for (std::size_t i = 0; i < pairs.size(); i += 2)
-      entries.emplace_back(static_cast<int>(nodes_.index_of(pairs[i])), static_cast<int>(nodes_.index_of(pairs[i + 1])),
-                           1.0);
+      entries.emplace_back(int(nodes_.index_of(pairs[i])), int(nodes_.index_of(pairs[i + 1])), 1.0);
   }
   SparseMatrix pattern(nodes_.count(), nodes_.count());
   pattern.setFromTriplets(entries.begin(), entries.end());
@@ -52,15 +51,15 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
   points_ = gather_points(points);
   root_problem_ = contact_.make_problem(nodes_);
   const std::vector<char>& is_solved = body_.solved;
-  const Vector solved = nodes_.gather(
-      Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(is_solved.data(), static_cast<Index>(is_solved.size()))
-          .cast<double>(),
-      d);
+  const Vector solved =
+      nodes_.gather(Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(is_solved.data(), Index(is_solved.size()))
+                        .cast<double>(),
+                    d);
   const SparseMatrix matrix = gather_matrix(ranks, region.matrix, region.nodes, d, nodes_);
   MatrixGraph graph = gather_graph(region.nodes);
   if (!contact_.is_root()) return;
-  region_solved_.assign(static_cast<std::size_t>(solved.size()), 0);
-  for (Index dof = 0; dof < solved.size(); ++dof) region_solved_[static_cast<std::size_t>(dof)] = solved[dof] > 0.0;
+  region_solved_.assign(std::size_t(solved.size()), 0);
+  for (Index dof = 0; dof < solved.size(); ++dof) region_solved_[std::size_t(dof)] = solved[dof] > 0.0;
   region_product_ = StageProduct(matrix, d);
   region_neighbourhood_ = std::make_unique<ContactNeighbourhood>(*root_problem_, std::move(graph));
   subdomains_ = std::make_unique<Subdomains>(*root_problem_, body_.coefficients, region_solved_, region_product_,

@@ -30,7 +30,7 @@ double largest_ratio(const Matrix& u, const Matrix& z) {
       factor.positive_definite() && factor.lower().diagonal().cwiseAbs2().minCoeff() > 1e-13 * u.diagonal().maxCoeff();
   if (!definite) return std::numeric_limits<double>::infinity();
   Vector x(u.rows());
-  for (Index i = 0; i < x.size(); ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.4 * static_cast<double>(i));
+  for (Index i = 0; i < x.size(); ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.4 * double(i));
   double ratio = 0.0;
   for (int k = 0; k < power_steps; ++k) {
     const Vector image = z * x;
@@ -57,7 +57,7 @@ void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_off
   mu_ = 1.0;
   if (mean == ActingReaction::end) return;
   normal_rows_.assign(row_offset.begin(), row_offset.end() - 1);
-  has_friction_ = row_offset.back() > static_cast<Index>(normal_rows_.size());
+  has_friction_ = row_offset.back() > Index(normal_rows_.size());
   normal_u_ = u_(normal_rows_, normal_rows_);
   const Matrix normal_z = z_(normal_rows_, normal_rows_);
   double lambda = largest_ratio(normal_u_, normal_z);
@@ -224,8 +224,8 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
   start_gap_ = start_gap;
   start_ = start;
   acting_ = start;
-  eligible_.assign(static_cast<std::size_t>(contact.points()), 1);
-  for (Index i = 0; i < contact.points(); ++i) eligible_[static_cast<std::size_t>(i)] = contact.is_eligible(i) ? 1 : 0;
+  eligible_.assign(std::size_t(contact.points()), 1);
+  for (Index i = 0; i < contact.points(); ++i) eligible_[std::size_t(i)] = contact.is_eligible(i) ? 1 : 0;
   pressing_.clear();
   for (const Index row : normal_rows_) pressing_.push_back(start_[row] > 0.0 ? 1 : 0);
   acting_weight_ = mu_;
@@ -236,7 +236,7 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
   friction_ = contact.friction_coefficient;
   if (contact.friction_bound.size() > 0) friction_ = (contact.friction_bound.array() > 0.0).select(0.0, friction_);
   q0_ = -(u_ * start_);
-  for (std::size_t i = 0; i < normal_rows_.size(); ++i) q0_[normal_rows_[i]] += start_gap_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < normal_rows_.size(); ++i) q0_[normal_rows_[i]] += start_gap_[Index(i)];
   has_path_ = true;
   path_.begin_step();
   difference_ = (1.0 - theta()) * start_;

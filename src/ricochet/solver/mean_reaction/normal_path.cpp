@@ -31,14 +31,14 @@ bool NormalPath::evaluate(const Vector& q) {
 /// Exchanges all wrong points (J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596). Returns false if their
 /// number does not fall.
 bool NormalPath::exchange_all(const Vector& q, std::vector<char>& active) {
-  const auto count = static_cast<std::size_t>(q.size());
+  const auto count = std::size_t(q.size());
   std::size_t fewest = count + 1;
   for (int remaining = patience_of_exchange; remaining >= 0;) {
     if (!set_.set_points(active) || !evaluate(q)) return false;
     const double force = path_rounding * r_.lpNorm<Eigen::Infinity>();
     wrong_.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      const auto at = static_cast<Index>(i);
+      const auto at = Index(i);
       if (eligible_[i] == 0) continue;
       if (active[i] != 0 ? r_[at] < -force : y_[at] < -gap_rounding_) wrong_.push_back(i);
     }
@@ -74,7 +74,7 @@ double NormalPath::piece_end(const std::vector<char>& active, double begin) {
   const double force = 2.0 * path_rounding * r_.lpNorm<Eigen::Infinity>(), gap = 2.0 * gap_rounding_;
   double end = 1.0;
   for (std::size_t i = 0; i < active.size(); ++i) {
-    const auto at = static_cast<Index>(i);
+    const auto at = Index(i);
     if (eligible_[i] == 0) continue;
     const double value = active[i] != 0 ? r_[at] + force : y_[at] + gap;
     const double rate = active[i] != 0 ? rate_[at] : y_rate_[at];

@@ -11,7 +11,7 @@ constexpr double dependent = 1e-11;
 
 /// Computes x = U⁻¹x on the set.
 void PathActiveSet::solve(Vector& x) const {
-  const auto count = static_cast<Index>(set_.size());
+  const auto count = Index(set_.size());
   const auto lower = factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>();
   lower.solveInPlace(x);
   lower.transpose().solveInPlace(x);
@@ -19,7 +19,7 @@ void PathActiveSet::solve(Vector& x) const {
 
 /// Appends a point. Returns false if it depends on those of the set.
 bool PathActiveSet::append(const Matrix& u, Index point, double tolerance) {
-  const auto count = static_cast<Index>(set_.size());
+  const auto count = Index(set_.size());
   if (factor_.rows() <= count) factor_.conservativeResize(u.rows(), u.cols());
   row_ = u(set_, point);
   factor_.topLeftCorner(count, count).triangularView<Eigen::Lower>().solveInPlace(row_);
@@ -39,9 +39,9 @@ void PathActiveSet::factorize(const Matrix& u) {
 
 void PathActiveSet::remove(const Matrix& u, std::size_t index) {
   requested_ = set_;
-  requested_.erase(requested_.begin() + static_cast<std::ptrdiff_t>(index));
-  const auto last = static_cast<Index>(requested_.size());
-  for (auto i = static_cast<Index>(index); i < last; ++i) reaction_[i] = reaction_[i + 1];
+  requested_.erase(requested_.begin() + std::ptrdiff_t(index));
+  const auto last = Index(requested_.size());
+  for (auto i = Index(index); i < last; ++i) reaction_[i] = reaction_[i + 1];
   reaction_.conservativeResize(last);
   factorize(u);
 }
@@ -54,7 +54,7 @@ void PathActiveSet::start(const Matrix& u, const Vector& q) {
     solve(reaction_);
     requested_.clear();
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      if (reaction_[static_cast<Index>(i)] >= 0.0) requested_.push_back(set_[i]);
+      if (reaction_[Index(i)] >= 0.0) requested_.push_back(set_[i]);
     }
     if (requested_.size() == set_.size()) return;
     factorize(u);
@@ -74,7 +74,7 @@ bool PathActiveSet::add_point(const Matrix& u, Index point, double gap) {
     double length = schur > dependent * whole ? -gap / schur : std::numeric_limits<double>::infinity();
     std::size_t leaves = set_.size();
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      const auto at = static_cast<Index>(i);
+      const auto at = Index(i);
       if (change[at] <= 0.0 || reaction_[at] >= length * change[at]) continue;
       length = reaction_[at] / change[at];
       leaves = i;
@@ -98,22 +98,22 @@ bool PathActiveSet::find(const Matrix& u, const Vector& q, const std::vector<cha
                          std::vector<char>& pressing) {
   requested_.clear();
   for (std::size_t i = 0; i < pressing.size(); ++i) {
-    if (pressing[i] != 0 && eligible[i] != 0) requested_.push_back(static_cast<Index>(i));
+    if (pressing[i] != 0 && eligible[i] != 0) requested_.push_back(Index(i));
   }
   start(u, q);
   const std::size_t max_iterations = 20 * pressing.size() + 100;
   for (std::size_t iteration = 0; iteration < max_iterations; ++iteration) {
     gap_ = q;
-    for (std::size_t i = 0; i < set_.size(); ++i) gap_ += reaction_[static_cast<Index>(i)] * u.col(set_[i]);
+    for (std::size_t i = 0; i < set_.size(); ++i) gap_ += reaction_[Index(i)] * u.col(set_[i]);
     for (const Index point : set_) gap_[point] = 0.0;
     Index deepest = -1;
     for (Index i = 0; i < gap_.size(); ++i) {
-      if (eligible[static_cast<std::size_t>(i)] == 0 || gap_[i] >= -gap_rounding) continue;
+      if (eligible[std::size_t(i)] == 0 || gap_[i] >= -gap_rounding) continue;
       if (deepest < 0 || gap_[i] < gap_[deepest]) deepest = i;
     }
     if (deepest < 0) {
       std::ranges::fill(pressing, char{0});
-      for (const Index point : set_) pressing[static_cast<std::size_t>(point)] = 1;
+      for (const Index point : set_) pressing[std::size_t(point)] = 1;
       return true;
     }
     if (!add_point(u, deepest, gap_[deepest])) return false;

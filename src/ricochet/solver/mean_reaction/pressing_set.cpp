@@ -13,7 +13,7 @@ constexpr double singular = 1e-13;
 void PressingSet::prepare(const Matrix& u) {
   u_ = &u;
   points_.clear();
-  indices_.assign(static_cast<std::size_t>(u.rows()), -1);
+  indices_.assign(std::size_t(u.rows()), -1);
   if (inverse_.rows() < u.rows()) inverse_.resize(u.rows(), u.rows());
 }
 
@@ -28,8 +28,8 @@ bool PressingSet::set_points(const std::vector<char>& marks) {
   removed_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {
     const bool is_in = indices_[i] >= 0, is_marked = marks[i] != 0;
-    if (is_marked && !is_in) added_.push_back(static_cast<Index>(i));
-    if (!is_marked && is_in) removed_.push_back(static_cast<Index>(i));
+    if (is_marked && !is_in) added_.push_back(Index(i));
+    if (!is_marked && is_in) removed_.push_back(Index(i));
   }
   // A change costs about three squares, a new inverse about two cubes.
   if (2 * (added_.size() + removed_.size()) < points_.size() + 2) {
@@ -40,7 +40,7 @@ bool PressingSet::set_points(const std::vector<char>& marks) {
   points_.clear();
   for (std::size_t i = 0; i < marks.size(); ++i) {
     indices_[i] = marks[i] != 0 ? count() : -1;
-    if (marks[i] != 0) points_.push_back(static_cast<Index>(i));
+    if (marks[i] != 0) points_.push_back(Index(i));
   }
   return renew();
 }
@@ -55,22 +55,22 @@ bool PressingSet::add(Index point) {
   inverse_.col(n).head(n) = -column_ / own;
   inverse_.row(n).head(n) = -row_.transpose() / own;
   inverse_(n, n) = 1.0 / own;
-  indices_[static_cast<std::size_t>(point)] = n;
+  indices_[std::size_t(point)] = n;
   points_.push_back(point);
   return true;
 }
 
 /// Moves the last point to the position of the removed one.
 bool PressingSet::remove(Index point) {
-  const Index last = count() - 1, index = indices_[static_cast<std::size_t>(point)];
+  const Index last = count() - 1, index = indices_[std::size_t(point)];
   if (index != last) {
     inverse().row(index).swap(inverse().row(last));
     inverse().col(index).swap(inverse().col(last));
-    points_[static_cast<std::size_t>(index)] = points_[static_cast<std::size_t>(last)];
-    indices_[static_cast<std::size_t>(points_[static_cast<std::size_t>(index)])] = index;
+    points_[std::size_t(index)] = points_[std::size_t(last)];
+    indices_[std::size_t(points_[std::size_t(index)])] = index;
   }
   points_.pop_back();
-  indices_[static_cast<std::size_t>(point)] = -1;
+  indices_[std::size_t(point)] = -1;
   const double own = inverse_(last, last);
   if (own == 0.0 || !std::isfinite(own)) return false;
   column_ = inverse_.col(last).head(last) / own;

@@ -26,7 +26,7 @@ class PressingSet {
 
  private:
   [[nodiscard]] auto inverse() { return inverse_.topLeftCorner(count(), count()); }
-  [[nodiscard]] Index count() const { return static_cast<Index>(points_.size()); }
+  [[nodiscard]] Index count() const { return Index(points_.size()); }
   [[nodiscard]] bool add(Index point);
   [[nodiscard]] bool remove(Index point);
 

@@ -39,7 +39,7 @@ void ReactionPath::choose_friction(const Step& step) {
     if (!has_friction(i)) continue;
     const Index row = normal_rows_[i], count = row_offset_[i + 1] - row - 1;
     share_[i] = std::min(1.0, share_limit_[i]);
-    const double limit = step.friction[static_cast<Index>(i)];
+    const double limit = step.friction[Index(i)];
     if (!definite_ || limit == 0.0 || share_limit_[i] < on_cone) continue;
     const Vector& of = step.end[row] > 0.0 ? step.end : step.start;
     const auto tangential = of.segment(row + 1, count);
@@ -69,7 +69,7 @@ bool ReactionPath::follow_normal(const Step& step) {
     for (std::size_t i = 0; i < share_.size(); ++i) {
       if (share_[i] != on_cone) continue;
       for (Index row = row_offset_[i] + 1; row < row_offset_[i + 1]; ++row)
-        path_u_.col(static_cast<Index>(i)) += ratio_[row] * (*u_)(normal_rows_, row);
+        path_u_.col(Index(i)) += ratio_[row] * (*u_)(normal_rows_, row);
     }
     selected_ = &along_;
     along_.prepare(path_u_, PathMatrix::general);
@@ -96,7 +96,7 @@ bool ReactionPath::leads_to_end(const Step& step) const {
     if ((along_.piece(k).first - along_.piece(k - 1).last).lpNorm<Eigen::Infinity>() > rounding) return false;
   }
   for (std::size_t i = 0; i < normal_rows_.size(); ++i) {
-    if (std::abs(along_.end()[static_cast<Index>(i)] - step.end[normal_rows_[i]]) > rounding) return false;
+    if (std::abs(along_.end()[Index(i)] - step.end[normal_rows_[i]]) > rounding) return false;
   }
   return true;
 }
@@ -106,7 +106,7 @@ void ReactionPath::compute_state(const Step& step, double time, const Vector& no
                                  Vector& motion) const {
   reaction = (1.0 - time) * friction_start_ + time * friction_end_;
   for (std::size_t i = 0; i < share_.size(); ++i) {
-    const double own = normal[static_cast<Index>(i)];
+    const double own = normal[Index(i)];
     reaction[normal_rows_[i]] = own;
     if (share_[i] != on_cone) continue;
     for (Index row = row_offset_[i] + 1; row < row_offset_[i + 1]; ++row) reaction[row] = ratio_[row] * own;

@@ -8,7 +8,7 @@ namespace ricochet {
 /// Peak memory of a run that is solved by iterations; a factor takes more.
 [[nodiscard]] inline double memory_of_iterations(Index dofs) {
   constexpr double per_dof = 2400.0;
-  return per_dof * static_cast<double>(dofs);
+  return per_dof * double(dofs);
 }
 
 /// Memory of a dense contact problem of so many rows, with its factor and copies.

@@ -8,13 +8,13 @@ constexpr Index nodes_per_column = 16;
 void MovedProduct::make(const StageProduct& product, const std::vector<Index>& nodes, Index all_nodes, int d) {
   clear();
   product_ = &product;
-  is_whole_ = static_cast<Index>(nodes.size()) * nodes_per_column > all_nodes;
+  is_whole_ = Index(nodes.size()) * nodes_per_column > all_nodes;
   if (is_whole_) return;
   columns_ = product.columns(nodes);
   for (const Index node : nodes) {
-    for (Index dof = node * d; dof < (node + 1) * d; ++dof) dofs_.push_back(static_cast<int>(dof));
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof) dofs_.push_back(int(dof));
   }
-  before_.resize(static_cast<Index>(dofs_.size()));
+  before_.resize(Index(dofs_.size()));
   motion_.resize(before_.size());
 }
 
@@ -23,7 +23,7 @@ void MovedProduct::begin(const Vector& x) {
     before_ = x;
     return;
   }
-  for (std::size_t i = 0; i < dofs_.size(); ++i) before_[static_cast<Index>(i)] = x[dofs_[i]];
+  for (std::size_t i = 0; i < dofs_.size(); ++i) before_[Index(i)] = x[dofs_[i]];
 }
 
 void MovedProduct::multiply(const Vector& x, Vector& y) {
@@ -32,8 +32,7 @@ void MovedProduct::multiply(const Vector& x, Vector& y) {
     product_->multiply(motion_, y);
     return;
   }
-  for (std::size_t i = 0; i < dofs_.size(); ++i)
-    motion_[static_cast<Index>(i)] = x[dofs_[i]] - before_[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < dofs_.size(); ++i) motion_[Index(i)] = x[dofs_[i]] - before_[Index(i)];
   y.setZero(x.size());
   y.noalias() += columns_ * motion_;
 }

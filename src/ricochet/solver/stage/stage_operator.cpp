@@ -39,13 +39,13 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
 std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs) {
   const auto solved_for = [&](Index dof) {
     if (problem.supports.contains(dof) || problem.is_tied_dof(dof)) return false;
-    if (dofs == StageDofs::massive) return problem.is_massless[static_cast<std::size_t>(dof)] == 0;
+    if (dofs == StageDofs::massive) return problem.is_massless[std::size_t(dof)] == 0;
     if (dofs == StageDofs::contact) return std::ranges::binary_search(problem.contact_dofs, dof);
     return true;
   };
   std::vector<int> result;
   for (Index dof = 0; dof < problem.dof_count(); ++dof) {
-    if (solved_for(dof)) result.push_back(static_cast<int>(dof));
+    if (solved_for(dof)) result.push_back(int(dof));
   }
   return result;
 }
@@ -54,7 +54,7 @@ SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseM
   std::vector<int> every(static_cast<std::size_t>(problem.dof_count())), support(every.size(), -1);
   std::iota(every.begin(), every.end(), 0);
   for (Index i = 0; i < problem.supports.size(); ++i)
-    support[static_cast<std::size_t>(problem.supports.dofs()[static_cast<std::size_t>(i)])] = static_cast<int>(i);
+    support[std::size_t(problem.supports.dofs()[std::size_t(i)])] = int(i);
   return extract(matrix, support, problem.supports.size(), every, problem.dof_count());
 }
 
@@ -67,7 +67,7 @@ void find_support_reaction(const SemidiscreteProblem& problem, const LinearStage
   stage.rows.add_force(solution.acting_normal(), solution.acting_tangential(), contact_force);
   reaction.noalias() = supported * solution.increment;
   for (Index i = 0; i < reaction.size(); ++i) {
-    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    const Index dof = problem.supports.dofs()[std::size_t(i)];
     reaction[i] = reaction[i] - stage.right_hand_side.force[dof] - contact_force[dof];
   }
 }
@@ -75,12 +75,12 @@ void find_support_reaction(const SemidiscreteProblem& problem, const LinearStage
 void prescribe(const SemidiscreteProblem& problem, const LinearStage& stage, Vector& increment) {
   const std::vector<Index>& supported = problem.supports.dofs();
   for (std::size_t i = 0; i < supported.size(); ++i)
-    increment[supported[i]] = stage.right_hand_side.prescribed[static_cast<Index>(i)];
+    increment[supported[i]] = stage.right_hand_side.prescribed[Index(i)];
 }
 
 std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs) {
   std::vector<int> number(static_cast<std::size_t>(problem.dof_count()), -1);
-  for (std::size_t i = 0; i < dofs.size(); ++i) number[static_cast<std::size_t>(dofs[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < dofs.size(); ++i) number[std::size_t(dofs[i])] = int(i);
   return number;
 }
 

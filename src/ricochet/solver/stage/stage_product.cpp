@@ -10,8 +10,7 @@ namespace {
 /// Number of blocks of a pattern stored whole.
 double count_blocks(const NodePattern& pattern) {
   double result = 0.0;
-  for (const RowGroup& group : pattern.groups)
-    result += static_cast<double>(group.rows * (2 * group.two_sided + group.one_sided));
+  for (const RowGroup& group : pattern.groups) result += double(group.rows * (2 * group.two_sided + group.one_sided));
   return result;
 }
 

@@ -20,8 +20,8 @@ std::vector<Bundle> bundle_points(const SemidiscreteProblem& problem, const std:
   DisjointSets together(static_cast<Index>(points.size()));
   std::map<Index, Index> first_at;
   Index first_that_slides = -1;
-  for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
-    const Index point = points[static_cast<std::size_t>(i)];
+  for (Index i = 0; i < Index(points.size()); ++i) {
+    const Index point = points[std::size_t(i)];
     problem.contact.visit_nodes(
         point, [&](Index node, double) { together.join(i, first_at.try_emplace(node, i).first->second); });
     if (!problem.contact.slides(point)) continue;
@@ -31,7 +31,7 @@ std::vector<Bundle> bundle_points(const SemidiscreteProblem& problem, const std:
   std::vector<Bundle> bundles;
   std::vector<std::size_t> bundle_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto root = static_cast<std::size_t>(together.root(static_cast<Index>(i)));
+    const auto root = std::size_t(together.root(Index(i)));
     if (root == i) {
       bundle_of[i] = bundles.size();
       bundles.push_back({{}, problem.nodes.col(problem.contact.first_own_node(points[i]))});

@@ -64,12 +64,12 @@ std::vector<Index> ContactNeighbourhood::nodes_around(const std::vector<Index>& 
 
 std::vector<Index> ContactNeighbourhood::points_around(const std::vector<Index>& points) {
   std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
-  for (const Index node : nodes_around(points, reserve_layers)) reached[static_cast<std::size_t>(node)] = 1;
+  for (const Index node : nodes_around(points, reserve_layers)) reached[std::size_t(node)] = 1;
   std::vector<Index> result;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     bool inside = false;
-    problem_.contact.visit_nodes(
-        point, [&](Index node, double) { inside = inside || reached[static_cast<std::size_t>(node)] != 0; });
+    problem_.contact.visit_nodes(point,
+                                 [&](Index node, double) { inside = inside || reached[std::size_t(node)] != 0; });
     if (inside) result.push_back(point);
   }
   return result;
@@ -78,7 +78,7 @@ std::vector<Index> ContactNeighbourhood::points_around(const std::vector<Index>&
 int ContactNeighbourhood::layers_to_solve(const std::vector<Index>& points, const OperatorCoefficients& coefficients,
                                           const StageProduct& product) {
   const double crossed = cells_crossed(problem_, coefficients, product, nodes_around(points, reserve_layers));
-  return static_cast<int>(std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * min_layers, 1.0 * max_layers));
+  return int(std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * min_layers, 1.0 * max_layers));
 }
 
 }  // namespace ricochet

@@ -19,8 +19,7 @@ constexpr std::size_t min_cluster_size = 256;
 /// points around them, and a single subdomain is cheaper.
 double dense_work(const std::vector<Subdomain::Extent>& extents) {
   double sum = 0.0;
-  for (const Subdomain::Extent& extent : extents)
-    sum += static_cast<double>(extent.points.size()) * static_cast<double>(extent.points.size());
+  for (const Subdomain::Extent& extent : extents) sum += double(extent.points.size()) * double(extent.points.size());
   return sum;
 }
 
@@ -28,7 +27,7 @@ std::vector<int> solved_dofs_of(const std::vector<Index>& nodes, const std::vect
   std::vector<int> dofs;
   for (const Index node : nodes) {
     for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
-      if (solved[static_cast<std::size_t>(dof)] != 0) dofs.push_back(static_cast<int>(dof));
+      if (solved[std::size_t(dof)] != 0) dofs.push_back(int(dof));
     }
   }
   return dofs;
@@ -37,11 +36,11 @@ std::vector<int> solved_dofs_of(const std::vector<Index>& nodes, const std::vect
 /// Analyses A on the dofs of the subdomain that are solved for.
 SparseCholesky analyse_subdomain(const std::vector<Index>& nodes, const std::vector<char>& solved, int d,
                                  const StageProduct& product) {
-  std::vector<int> number(nodes.size() * static_cast<std::size_t>(d), -1);
+  std::vector<int> number(nodes.size() * std::size_t(d), -1);
   int count = 0;
   for (std::size_t i = 0; i < number.size(); ++i) {
-    const Index dof = nodes[i / static_cast<std::size_t>(d)] * d + static_cast<Index>(i) % d;
-    if (solved[static_cast<std::size_t>(dof)] != 0) number[i] = count++;
+    const Index dof = nodes[i / std::size_t(d)] * d + Index(i) % d;
+    if (solved[std::size_t(dof)] != 0) number[i] = count++;
   }
   SparseCholesky factor;
   factor.analyse(extract(product.principal(nodes), number, count, number, count));
@@ -53,8 +52,8 @@ SparseCholesky analyse_subdomain(const std::vector<Index>& nodes, const std::vec
 Subdomain::Subdomain(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                      const std::vector<char>& solved, const Extent& extent, const StageProduct& product,
                      SharedContact& shared, FactoredStage* condensed_stage)
-    : has_(static_cast<std::size_t>(problem.contact.size()), 0), own_points_(extent.own_points) {
-  for (const Index point : extent.points) has_[static_cast<std::size_t>(point)] = 1;
+    : has_(std::size_t(problem.contact.size()), 0), own_points_(extent.own_points) {
+  for (const Index point : extent.points) has_[std::size_t(point)] = 1;
   own_dofs_ = solved_dofs_of(extent.own_nodes, solved, problem.dimension);
   // A principal block of a positive definite matrix is positive definite; if A is not, conjugate gradients report it,
   // too.
@@ -80,7 +79,7 @@ void Subdomain::restrict_to_own(const StageSolution& local, StageSolution& solut
     solution.normal_reaction[point] = local.normal_reaction[point];
     solution.tangential_reaction.segment(point * tangents, tangents) =
         local.tangential_reaction.segment(point * tangents, tangents);
-    solution.contact_status[static_cast<std::size_t>(point)] = local.contact_status[static_cast<std::size_t>(point)];
+    solution.contact_status[std::size_t(point)] = local.contact_status[std::size_t(point)];
   }
 }
 

@@ -64,7 +64,7 @@ void add_consistent_rows(std::vector<MethodRow>& rows, std::vector<std::unique_p
     if (!rows[i].method.mass.empty() || !lacks_contact_inertia(rows[i].usual_mass())) continue;
     MethodRow row{{rows[i].method.scheme, "consistent"}, {}};
     for (const auto& chooser : choosers) row.chosen.push_back(chooser->choose(row.method));
-    if (!row.is_always_refused()) rows.insert(rows.begin() + static_cast<std::ptrdiff_t>(i + 1), std::move(row));
+    if (!row.is_always_refused()) rows.insert(rows.begin() + std::ptrdiff_t(i + 1), std::move(row));
   }
 }
 

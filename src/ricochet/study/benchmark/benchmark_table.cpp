@@ -17,7 +17,7 @@ namespace ricochet {
 
 namespace {
 
-constexpr int not_met = static_cast<int>(ErrorKind::expectation), refused = static_cast<int>(ErrorKind::invalid_input);
+constexpr int not_met = int(ErrorKind::expectation), refused = int(ErrorKind::invalid_input);
 
 /// Returns the results of the expectations that apply to this run, if its case can be read.
 std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const std::string& directory,
@@ -82,15 +82,14 @@ std::string title_of(const BenchmarkPlan& plan, const BenchmarkRun& run) {
 }  // namespace
 
 std::size_t BenchmarkRunResult::holds() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(expectations, [](const ExpectationResult& e) { return e.holds; }));
+  return std::size_t(std::ranges::count_if(expectations, [](const ExpectationResult& e) { return e.holds; }));
 }
 
 std::string BenchmarkRunResult::status_text() const {
   const std::string word = state.status_text();
   if (word != "failed" || !state.summary) return word;
   const RunSummary& s = *state.summary;
-  return fmt::format("failed at t = {:.3g}", s.adaptive ? s.adaptive->time : static_cast<double>(s.steps) * s.step);
+  return fmt::format("failed at t = {:.3g}", s.adaptive ? s.adaptive->time : double(s.steps) * s.step);
 }
 
 BenchmarkResults read_benchmark_results(const BenchmarkPlan& plan) {

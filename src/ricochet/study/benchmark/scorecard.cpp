@@ -167,7 +167,7 @@ ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& r
     if (result.state.status_text() == "refused") {
       row.resize(5);
     } else {
-      row.insert(row.end(), {static_cast<long>(result.holds()), static_cast<long>(result.applies())});
+      row.insert(row.end(), {long(result.holds()), long(result.applies())});
     }
     if (const auto& s = result.state.summary; s) {
       row.insert(row.end(), {100.0 * s->method_energy.created, 100.0 * s->method_energy.lost, result.status_text(),

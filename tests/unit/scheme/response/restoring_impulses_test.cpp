@@ -23,7 +23,7 @@ double root(double w, double a, double c) {
 Matrix coupled(Index size) {
   Matrix w(size, size);
   for (Index i = 0; i < size; ++i) {
-    for (Index j = 0; j < size; ++j) w(i, j) = 3.0 * std::exp(-0.5 * static_cast<double>(std::abs(i - j)));
+    for (Index j = 0; j < size; ++j) w(i, j) = 3.0 * std::exp(-0.5 * double(std::abs(i - j)));
   }
   return w;
 }
@@ -59,7 +59,7 @@ TEST(RestoringImpulses, SolveTheEquationOfManyPoints) {
   const Matrix w = coupled(size);
   Vector a(size), c(size);
   for (Index i = 0; i < size; ++i) {
-    const auto x = static_cast<double>(i);
+    const auto x = double(i);
     a[i] = 3.0 * std::sin(1.7 * x) - 1.0;  // some approach, others separate
     c[i] = std::pow(10.0, -6.0 + std::fmod(2.3 * x, 6.0));
   }

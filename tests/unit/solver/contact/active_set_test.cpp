@@ -24,7 +24,7 @@ struct Problem {
       : w(std::move(operator_matrix)),
         q(std::move(offset)),
         rounding(Vector::Zero(q.size())),
-        eligible(static_cast<std::size_t>(q.size()), 1) {}
+        eligible(std::size_t(q.size()), 1) {}
   [[nodiscard]] FrictionProblem points() const {
     FrictionProblem problem(std::vector<Index>(eligible.size(), 1), 0.0);
     problem.w = w;
@@ -45,7 +45,7 @@ Problem normal_problem(Index size, unsigned seed, double digits = 1.0) {
   const Matrix basis = Eigen::HouseholderQR<Matrix>(square).householderQ();
   Vector values(size);
   for (Index i = 0; i < size; ++i) {
-    values[i] = std::pow(10.0, -digits * static_cast<double>(i) / static_cast<double>(std::max<Index>(size - 1, 1)));
+    values[i] = std::pow(10.0, -digits * double(i) / double(std::max<Index>(size - 1, 1)));
   }
   Matrix w = basis * values.asDiagonal() * basis.transpose();
   w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
@@ -61,7 +61,7 @@ class ActiveSetRun : public ContactRun {
   /// Starts with reactions at these points.
   void set_active(const std::vector<char>& active) {
     Vector start(static_cast<Index>(active.size()));
-    for (std::size_t i = 0; i < active.size(); ++i) start[static_cast<Index>(i)] = active[i] != 0 ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < active.size(); ++i) start[Index(i)] = active[i] != 0 ? 1.0 : 0.0;
     set_warm_start(start);
   }
 };
@@ -84,10 +84,10 @@ Vector solve(const Problem& problem) {
 void expect_solution(const Problem& problem, const Vector& r) {
   const Index size = problem.q.size();
   ASSERT_EQ(r.size(), size);
-  const double factor_rounding = 4.0 * static_cast<double>(size) * epsilon * problem.w.diagonal().maxCoeff();
+  const double factor_rounding = 4.0 * double(size) * epsilon * problem.w.diagonal().maxCoeff();
   for (Index i = 0; i < size; ++i) {
     EXPECT_GE(r[i], 0.0);
-    if (problem.eligible[static_cast<std::size_t>(i)] == 0) {
+    if (problem.eligible[std::size_t(i)] == 0) {
       EXPECT_EQ(r[i], 0.0);
       continue;
     }
@@ -112,13 +112,13 @@ Vector brute_force(const Problem& problem) {
     Vector r = Vector::Zero(size);
     if (!active.empty()) {
       const Vector part = Matrix(problem.w(active, active)).fullPivLu().solve(-problem.q(active));
-      for (std::size_t k = 0; k < active.size(); ++k) r[active[k]] = part[static_cast<Index>(k)];
+      for (std::size_t k = 0; k < active.size(); ++k) r[active[k]] = part[Index(k)];
     }
     const Vector y = problem.q + problem.w * r;
     bool good = true;
     for (Index i = 0; i < size; ++i) {
       const bool in = (set >> i & 1U) != 0;
-      if (problem.eligible[static_cast<std::size_t>(i)] == 0) {
+      if (problem.eligible[std::size_t(i)] == 0) {
         good = good && !in;
       } else {
         good = good && (in ? r[i] >= 0.0 : y[i] >= -1e-12);
@@ -133,8 +133,8 @@ Vector brute_force(const Problem& problem) {
 TEST(ActiveSet, AgreesWithTheEnumerationOfAllSets) {
   for (Index size = 1; size <= 10; ++size) {
     for (unsigned seed = 0; seed < 12; ++seed) {
-      Problem problem = normal_problem(size, 100 * static_cast<unsigned>(size) + seed, 2.0);
-      if (seed % 3 == 2) problem.eligible[static_cast<std::size_t>(seed) % static_cast<std::size_t>(size)] = 0;
+      Problem problem = normal_problem(size, 100 * unsigned(size) + seed, 2.0);
+      if (seed % 3 == 2) problem.eligible[std::size_t(seed) % std::size_t(size)] = 0;
       const Vector expected = brute_force(problem);
       const Vector found = solve(problem);
       expect_solution(problem, found);
@@ -147,7 +147,7 @@ TEST(ActiveSet, SolvesProblemsOfManySizes) {
   for (const Index size : {1, 2, 5, 20, 50, 100, 200}) {
     for (const double digits : {0.0, 1.0, 3.0, 6.0}) {
       SCOPED_TRACE(testing::Message() << size << " points, condition 1e" << digits);
-      const Problem problem = normal_problem(size, static_cast<unsigned>(size) + 7U, digits);
+      const Problem problem = normal_problem(size, unsigned(size) + 7U, digits);
       expect_solution(problem, solve(problem));
     }
   }
@@ -157,7 +157,7 @@ TEST(ActiveSet, SolvesIllConditionedProblems) {
   for (const Index size : {3, 10, 40, 120}) {
     for (const double digits : {9.0, 12.0}) {
       SCOPED_TRACE(testing::Message() << size << " points, condition 1e" << digits);
-      const Problem problem = normal_problem(size, static_cast<unsigned>(size), digits);
+      const Problem problem = normal_problem(size, unsigned(size), digits);
       expect_solution(problem, solve(problem));
     }
   }
@@ -170,14 +170,14 @@ TEST(ActiveSet, SolvesDegenerateProblems) {
     const Index size = 8;
     Matrix root(size, size);
     for (Index j = 0; j < size; ++j) {
-      for (Index i = 0; i < size; ++i) root(i, j) = static_cast<double>(random() % 5) - 2.0;
+      for (Index i = 0; i < size; ++i) root(i, j) = double(random() % 5) - 2.0;
     }
     const Matrix w = root * root.transpose() + Matrix::Identity(size, size);
     Vector r(size), y(size);
     for (Index i = 0; i < size; ++i) {
       const auto kind = random() % 3;
-      r[i] = kind == 0 ? 1.0 + static_cast<double>(random() % 4) : 0.0;
-      y[i] = kind == 1 ? 1.0 + static_cast<double>(random() % 4) : 0.0;
+      r[i] = kind == 0 ? 1.0 + double(random() % 4) : 0.0;
+      y[i] = kind == 1 ? 1.0 + double(random() % 4) : 0.0;
     }
     const Problem problem(w, y - w * r);
     const Vector found = solve(problem);
@@ -205,17 +205,17 @@ bool plain_method_cycles(const Problem& problem) {
   while (seen.insert(active).second) {
     std::vector<Index> indices;
     for (Index i = 0; i < size; ++i) {
-      if (active[static_cast<std::size_t>(i)] != 0) indices.push_back(i);
+      if (active[std::size_t(i)] != 0) indices.push_back(i);
     }
     Vector r = Vector::Zero(size);
     if (!indices.empty()) {
       const Vector part = Matrix(problem.w(indices, indices)).llt().solve(-problem.q(indices));
-      for (std::size_t k = 0; k < indices.size(); ++k) r[indices[k]] = part[static_cast<Index>(k)];
+      for (std::size_t k = 0; k < indices.size(); ++k) r[indices[k]] = part[Index(k)];
     }
     const Vector y = problem.q + problem.w * r;
     bool changed = false;
     for (Index i = 0; i < size; ++i) {
-      char& state = active[static_cast<std::size_t>(i)];
+      char& state = active[std::size_t(i)];
       if (state != 0 ? r[i] < 0.0 : y[i] < -1e-12) {
         state ^= 1;
         changed = true;
@@ -261,7 +261,7 @@ TEST(ActiveSet, AnyStartGivesTheSameSolution) {
   for (int trial = 0; trial < 20; ++trial) {
     ActiveSetRun solver;
     std::vector<char> start(static_cast<std::size_t>(size));
-    for (char& state : start) state = trial == 0 ? 1 : static_cast<char>(random() % 2);
+    for (char& state : start) state = trial == 0 ? 1 : char(random() % 2);
     solver.set_active(start);
     const Vector found = solve(problem, solver);
     for (Index i = 0; i < size; ++i) EXPECT_EQ(expected[i] > 0.0, found[i] > 0.0);
@@ -303,13 +303,13 @@ TEST(ActiveSet, IneligiblePointsAreNotThere) {
   std::vector<Index> kept;
   for (Index i = 0; i < size; ++i) {
     if (i % 3 == 0) {
-      problem.eligible[static_cast<std::size_t>(i)] = 0;
+      problem.eligible[std::size_t(i)] = 0;
     } else {
       kept.push_back(i);
     }
   }
   ActiveSetRun solver;
-  solver.set_active(std::vector<char>(static_cast<std::size_t>(size), 1));
+  solver.set_active(std::vector<char>(std::size_t(size), 1));
   const Vector found = solve(problem, solver);
   expect_solution(problem, found);
   const Vector reduced = solve(Problem(problem.w(kept, kept), problem.q(kept)));

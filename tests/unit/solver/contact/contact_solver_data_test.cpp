@@ -38,7 +38,7 @@ TEST_P(ContactSolverData, RefuseOperatorsWithNumbersThatAreNone) {
     for (const double friction : {0.0, 0.3}) {
       for (const auto& [i, j] : {std::pair<Index, Index>{1, 2}, {0, 5}, {3, 3}, {0, 3}}) {
         FrictionProblem problem = random_problem(6, 2, friction, 3, 1.0);
-        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.row_offset[static_cast<std::size_t>(k)]] = -1.0;
+        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.row_offset[std::size_t(k)]] = -1.0;
         problem.w(i, j) = problem.w(j, i) = value;
         const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
         EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data) << i << ' ' << j << ' ' << friction;
@@ -93,7 +93,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   ASSERT_TRUE(cold.solved()) << cold.reason;
   Snapshot saved;
   solver->persist(saved.saver("solver"));
-  const auto second = static_cast<Index>(dimension());
+  const auto second = Index(dimension());
   const auto with = [&](const std::map<std::string, Snapshot::Value>& changes) {
     Snapshot changed = saved;
     for (const auto& [name, value] : changes) changed.set("solver." + name, value);
@@ -113,7 +113,7 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   expect_refused("another kind", {{"reactions", Integers{1, 2}}});
   const auto unknowns = [](Integers rows, Integers sizes) {
     const Vector one = (Vector(7) << 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0).finished();
-    const Vector values = one.replicate(static_cast<Index>(rows.size()), 1);
+    const Vector values = one.replicate(Index(rows.size()), 1);
     return std::map<std::string, Snapshot::Value>{
         {"unknowns.rows", rows}, {"unknowns.sizes", sizes}, {"unknowns.values", values}};
   };
@@ -197,7 +197,7 @@ TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
       if (!solution.solved()) continue;
       const Vector u = problem.q + problem.w * solution.reaction;
       for (Index i = 0; i < problem.points(); ++i)
-        EXPECT_GE(u[problem.row_offset[static_cast<std::size_t>(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
+        EXPECT_GE(u[problem.row_offset[std::size_t(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
             << friction << ' ' << seed;
     }
   }

@@ -32,7 +32,7 @@ Long measure(const FrictionProblem& problem, const LongVector& reaction) {
   const LongVector u = problem.q.cast<Long>() + problem.w.cast<Long>() * reaction;
   Long largest = 0;
   for (Index i = 0; i < problem.points(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     if (problem.eligible[at] == 0) continue;
     const Index row = problem.row_offset[at];
     const bool friction = problem.row_offset[at + 1] - row > 1 && problem.coefficient[i] > 0.0;
@@ -51,7 +51,7 @@ Long measure(const FrictionProblem& problem, const LongVector& reaction) {
 /// The residual relative to the data.
 double true_residual(const FrictionProblem& problem, const Vector& reaction) {
   const LongVector none = LongVector::Zero(reaction.size());
-  return static_cast<double>(measure(problem, reaction.cast<Long>()) / measure(problem, none));
+  return double(measure(problem, reaction.cast<Long>()) / measure(problem, none));
 }
 
 /// Expects a solution to the tolerance, reported as solved.
@@ -76,7 +76,7 @@ FrictionProblem scaled(const FrictionProblem& problem, const Vector& scales) {
 Vector point_scales(const FrictionProblem& problem, const std::function<double(Index)>& scale) {
   Vector result(problem.q.size());
   for (Index i = 0; i < problem.points(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = std::size_t(i);
     result.segment(problem.row_offset[at], problem.row_offset[at + 1] - problem.row_offset[at]).setConstant(scale(i));
   }
   return result;
@@ -153,7 +153,7 @@ TEST_P(ContactSolvers, RecordWithoutChangingAnything) {
     const ContactSolution recorded = solve(problem, {.tolerance = 1e-9, .record = true});
     EXPECT_EQ(recorded.reaction, plain.reaction);
     EXPECT_EQ(recorded.iterations, plain.iterations);
-    EXPECT_EQ(recorded.record.size(), static_cast<std::size_t>(plain.iterations));
+    EXPECT_EQ(recorded.record.size(), std::size_t(plain.iterations));
   }
 }
 
@@ -161,7 +161,7 @@ TEST_P(ContactSolvers, SayWhatTheyDidNotSolve) {
   const FrictionProblem problem = random_problem(60, dimension(), 1.0, 3, 4.0);
   const ContactSolution solution = solve(problem, {.tolerance = 1e-10, .iteration_limit = 1, .record = true});
   const double residual = true_residual(problem, solution.reaction);
-  EXPECT_EQ(static_cast<int>(solution.record.size()), solution.iterations);
+  EXPECT_EQ(int(solution.record.size()), solution.iterations);
   if (solution.solved()) {
     EXPECT_EQ(GetParam(), "automatic") << "all others stop at the limit";
     EXPECT_LE(residual, 1e-10 + solution.rounding_floor);
@@ -204,8 +204,7 @@ TEST_P(ContactSolvers, GiveTheSameBitsInUnitsThatDifferByPowersOfTwo) {
   const ContactSolution solution = solve(problem, options);
   ASSERT_TRUE(solution.solved());
   std::mt19937 random(1);
-  const Vector scales =
-      point_scales(problem, [&](Index) { return std::ldexp(1.0, static_cast<int>(random() % 41) - 20); });
+  const Vector scales = point_scales(problem, [&](Index) { return std::ldexp(1.0, int(random() % 41) - 20); });
   FrictionProblem other = scaled(problem, scales);
   const ContactSolution by_points = solve(other, options);
   EXPECT_EQ(Vector(scales.asDiagonal() * by_points.reaction), solution.reaction);
@@ -234,7 +233,7 @@ TEST_P(ContactSolvers, MeasureTheSameInAnyScaling) {
 
 /// A problem that couples neighbours only.
 FrictionProblem chain(Index points, Index dimension, double friction) {
-  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), dimension), friction);
+  FrictionProblem problem(std::vector<Index>(std::size_t(points), dimension), friction);
   std::mt19937 random(3);
   for (Index i = 0; i < points; ++i) {
     const auto own = [&](Index j) { return Eigen::seqN(j * dimension, dimension); };

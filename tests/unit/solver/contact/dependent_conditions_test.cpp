@@ -58,12 +58,12 @@ Constrained random_constraints(Index unknowns, Index count, unsigned seed) {
   result.offset.resize(count);
   for (Index i = 0; i < count; ++i) {
     const auto kind = i == 0 ? Kind::random : static_cast<Kind>(random() % 4);
-    const Index like = i == 0 ? 0 : static_cast<Index>(random() % static_cast<unsigned>(i));
+    const Index like = i == 0 ? 0 : Index(random() % unsigned(i));
     Vector row = uniform(unknowns, random);
     if (kind == Kind::twice) row = result.rows.row(like);
     if (kind == Kind::opposed) row = -result.rows.row(like);
     if (kind == Kind::nearly_parallel) {
-      const double angle = std::pow(10.0, -static_cast<double>(1 + random() % 16));
+      const double angle = std::pow(10.0, -double(1 + random() % 16));
       row = result.rows.row(like).transpose() + angle * row;
     }
     result.rows.row(i) = row / row.norm();
@@ -94,8 +94,8 @@ void expect_minimum(const Constrained& system, const Vector& reaction) {
 TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
   for (unsigned seed = 0; seed < samples(400); ++seed) {
     SCOPED_TRACE(seed);
-    const Index unknowns = 1 + static_cast<Index>(seed % 7);
-    const Index count = 2 + static_cast<Index>(seed % 17);
+    const Index unknowns = 1 + Index(seed % 7);
+    const Index count = 2 + Index(seed % 17);
     const Constrained system = random_constraints(unknowns, count, seed);
     for (const char* name : {"automatic", "active-set"}) {
       std::mt19937 random(seed);
@@ -109,7 +109,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
         const ContactSolution& solution = run.solve(system.problem(order));
         ASSERT_TRUE(solution.solved()) << name << ": " << solution.reason << ", residual " << solution.residual;
         Vector reaction(count);
-        for (Index i = 0; i < count; ++i) reaction[order[static_cast<std::size_t>(i)]] = solution.reaction[i];
+        for (Index i = 0; i < count; ++i) reaction[order[std::size_t(i)]] = solution.reaction[i];
         expect_minimum(system, reaction);
         if (statement == 0) first = reaction;
         // (δ − δ′)ᵀA(δ − δ′) = (r − r′)ᵀ(u − u′), which is negative up to the rounding of u.
@@ -125,7 +125,7 @@ TEST(DependentConditions, HaveOneMotionHoweverTheyAreStated) {
 TEST(DependentConditions, StayInStepWithWhatIsKept) {
   for (unsigned seed = 0; seed < samples(40); ++seed) {
     SCOPED_TRACE(seed);
-    const Index count = 12 + static_cast<Index>(seed % 20);
+    const Index count = 12 + Index(seed % 20);
     const Constrained system = random_constraints(6, count, 1000 + seed);
     const std::vector<Index> order = identity_order(count);
     FrictionProblem problem = system.problem(order);
@@ -159,7 +159,7 @@ TEST(DependentConditions, NameThosePointsThatContradictOneAnother) {
     system.rows.row(c) = -(one + other);
     system.offset[a] = 0.3;
     system.offset[b] = 0.4;
-    const double lack = std::pow(10.0, -static_cast<double>(seed % 6));
+    const double lack = std::pow(10.0, -double(seed % 6));
     system.offset[c] = -0.7 - lack;
     // The other conditions have clearance for every motion of interest.
     for (const Index i : {0, 2, 3, 5, 7}) system.offset[i] = 1e3;
@@ -186,14 +186,14 @@ TEST(DependentConditions, WithFrictionMeetTheLaw) {
   for (unsigned seed = 0; seed < samples(150); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const Index nodes = 1 + static_cast<Index>(seed % 4);
+    const Index nodes = 1 + Index(seed % 4);
     Constrained system;
     system.stiffness = random_operator(2 * nodes, 1.0, random);
-    const Index planes = 2 + static_cast<Index>(seed % 2);
+    const Index planes = 2 + Index(seed % 2);
     const Index points = planes * nodes;
     system.rows.setZero(2 * points, 2 * nodes);
     system.offset.resize(2 * points);
-    const double angle = std::pow(10.0, -static_cast<double>(seed % 12));
+    const double angle = std::pow(10.0, -double(seed % 12));
     for (Index i = 0; i < points; ++i) {
       const Index node = i / planes;
       // A floor, a nearly identical one, and a ceiling.
@@ -202,7 +202,7 @@ TEST(DependentConditions, WithFrictionMeetTheLaw) {
       system.offset[2 * i] = i % planes == 2 ? 2.0 : -std::abs(uniform(random));
       system.offset[2 * i + 1] = uniform(random);
     }
-    FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), 2), 0.2);
+    FrictionProblem problem(std::vector<Index>(std::size_t(points), 2), 0.2);
     problem.w = system.contact_operator();
     problem.q = system.offset;
     expect_law(problem, solve(problem), 1e-10);

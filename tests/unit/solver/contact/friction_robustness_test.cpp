@@ -188,7 +188,7 @@ FrictionProblem corners(Index nodes, double friction, double rounding, double di
   std::mt19937 random(seed);
   const Matrix w = random_operator(3 * nodes, digits, random);
   const Vector q = uniform(3 * nodes, random);
-  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(3 * nodes), 3), friction);
+  FrictionProblem problem(std::vector<Index>(std::size_t(3 * nodes), 3), friction);
   Matrix rows = Matrix::Zero(9 * nodes, 3 * nodes);
   Vector gaps = Vector::Zero(rows.rows());
   problem.rounding = Vector::Constant(rows.rows(), 1e-15);

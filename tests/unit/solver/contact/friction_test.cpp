@@ -68,7 +68,7 @@ std::vector<Vector> enumerate(const FrictionProblem& problem) {
     Matrix system = Matrix::Zero(rows, rows);
     Vector right = Vector::Zero(rows);
     const auto state = [&](Index i) { return code >> (2 * i) & 3; };
-    const auto row_of = [&](Index i) { return problem.row_offset[static_cast<std::size_t>(i)]; };
+    const auto row_of = [&](Index i) { return problem.row_offset[std::size_t(i)]; };
     const auto has_tangent = [&](Index i) { return row_of(i + 1) - row_of(i) > 1; };
     bool possible = true;
     for (Index i = 0; i < points; ++i) {
@@ -123,7 +123,7 @@ TEST(Friction, AgreesWithTheActiveSetWithoutFriction) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     FrictionProblem problem = random_problem(40, seed % 2 == 0 ? 2 : 3, 0.0, seed);
     const ContactSolution solution = solve(problem);
-    FrictionProblem normals(std::vector<Index>(static_cast<std::size_t>(problem.points()), 1), 0.0);
+    FrictionProblem normals(std::vector<Index>(std::size_t(problem.points()), 1), 0.0);
     const std::vector<Index> rows(problem.row_offset.begin(), problem.row_offset.end() - 1);
     normals.w = problem.w(rows, rows);
     normals.q = problem.q(rows);
@@ -139,9 +139,8 @@ TEST(Friction, GivesTheSameBitsInUnitsThatArePowersOfTwoApart) {
   problem.bound.tail(10).setConstant(0.25);
   // Rows of very different size, as from points with different areas.
   for (Index i = 0; i < 30; ++i) {
-    const double factor = std::pow(3.0, 0.2 * static_cast<double>(i));
-    for (Index row = problem.row_offset[static_cast<std::size_t>(i)];
-         row < problem.row_offset[static_cast<std::size_t>(i + 1)]; ++row) {
+    const double factor = std::pow(3.0, 0.2 * double(i));
+    for (Index row = problem.row_offset[std::size_t(i)]; row < problem.row_offset[std::size_t(i + 1)]; ++row) {
       problem.w.row(row) *= factor;
       problem.w.col(row) *= factor;
       problem.q[row] *= factor;
@@ -169,7 +168,7 @@ TEST(Friction, TurnsWithTheTangentsFrames) {
     Matrix turn = Matrix::Identity(problem.q.size(), problem.q.size());
     for (std::size_t i = 0; i + 1 < problem.row_offset.size(); ++i) {
       if (problem.row_offset[i + 1] - problem.row_offset[i] < 3) continue;
-      const double angle = 0.7 + 1.3 * static_cast<double>(i);
+      const double angle = 0.7 + 1.3 * double(i);
       turn.block<2, 2>(problem.row_offset[i] + 1, problem.row_offset[i] + 1) << std::cos(angle), -std::sin(angle),
           std::sin(angle), std::cos(angle);
     }
@@ -223,11 +222,11 @@ TEST(Friction, SolvesCoulombsLawWithALimit) {
       for (unsigned seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << dimension << "D, F = " << friction << ", " << seed);
         FrictionProblem problem = random_problem(20, dimension, friction, seed);
-        problem.bound.setConstant(0.02 * static_cast<double>(1 + seed));
+        problem.bound.setConstant(0.02 * double(1 + seed));
         const ContactSolution solution = solve(problem);
         expect_law(problem, solution);
         for (Index i = 0; i < problem.points(); ++i) {
-          const double normal = solution.reaction[problem.row_offset[static_cast<std::size_t>(i)]];
+          const double normal = solution.reaction[problem.row_offset[std::size_t(i)]];
           limited += friction * normal > problem.bound[i] ? 1 : 0;
         }
       }
@@ -243,7 +242,7 @@ TEST(Friction, SolvesTrescasLawAndSaysWhereItDoesNot) {
     for (unsigned seed = 0; seed < 40; ++seed) {
       SCOPED_TRACE(testing::Message() << dimension << "D, " << seed);
       FrictionProblem problem = random_problem(20, dimension, 0.0, seed);
-      problem.bound.setConstant(0.02 * static_cast<double>(1 + seed));
+      problem.bound.setConstant(0.02 * double(1 + seed));
       const ContactSolution solution = solve(problem);
       if (solution.solved()) {
         expect_law(problem, solution);

@@ -21,14 +21,14 @@ FrictionProblem inclined_planes(Index nodes, Index dimension, Index planes, doub
     q.segment(node * dimension, dimension) = uniform(dimension, random);
     q[node * dimension] *= 0.1;
   }
-  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(nodes * planes), dimension), friction);
+  FrictionProblem problem(std::vector<Index>(std::size_t(nodes * planes), dimension), friction);
   Matrix rows = Matrix::Zero(nodes * planes * dimension, nodes * dimension);
   Vector gaps = Vector::Zero(rows.rows());
   for (Index node = 0; node < nodes; ++node) {
     const double place = uniform(random);
     for (Index plane = 0; plane < planes; ++plane) {
       const Index row = (node * planes + plane) * dimension, column = node * dimension;
-      const double tilt = angle * static_cast<double>(plane % 2 == 0 ? plane : -plane);
+      const double tilt = angle * double(plane % 2 == 0 ? plane : -plane);
       rows.block(row, column, dimension, dimension).setIdentity();
       rows(row, column + 1) = tilt;
       rows(row + 1, column) = -tilt;
