@@ -34,9 +34,7 @@ std::string normal_text(const MeshMeasure& measure, int dimension) {
 }
 
 /// Returns the largest coordinate, relative to which positions are rounded.
-double reach(const Mesh& mesh) {
-  return mesh.nodes.cwiseAbs().maxCoeff();
-}
+double reach(const Mesh& mesh) { return mesh.nodes.cwiseAbs().maxCoeff(); }
 
 void print_materials(const Body& body) {
   const Vector volumes = cell_volumes(body);

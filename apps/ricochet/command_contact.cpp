@@ -18,9 +18,7 @@ void list_solvers() {
   for (const auto& solver : contact_solver_registry().all()) fmt::print("{:<27} {}\n", solver.name, solver.type.text);
 }
 
-void print_row(const char* name, const std::string& value) {
-  fmt::print("  {:<12} {}\n", name, value);
-}
+void print_row(const char* name, const std::string& value) { fmt::print("  {:<12} {}\n", name, value); }
 
 std::string friction_text(const Vector& mu) {
   if (mu.size() == 0 || mu.maxCoeff() == 0.0) return "none";

@@ -32,9 +32,7 @@ std::string shape_text(const CellBlock& block) {
 }
 
 /// Returns true for a file for which gmsh may run shell commands; only `run` and `validate --mesh` pass it to gmsh.
-bool must_be_meshed_first(const MeshFile& file) {
-  return may_run_commands(file.path) && !is_mesh_cached(file);
-}
+bool must_be_meshed_first(const MeshFile& file) { return may_run_commands(file.path) && !is_mesh_cached(file); }
 
 void describe_mesh(const std::string& path) {
   MeshFile file;
@@ -184,13 +182,9 @@ void describe_result(const std::string& directory) {
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
 }
 
-bool is_case(const std::string& path) {
-  return !fs::is_directory(path) && fs::path(path).extension() == ".toml";
-}
+bool is_case(const std::string& path) { return !fs::is_directory(path) && fs::path(path).extension() == ".toml"; }
 
-bool is_result(const std::string& path) {
-  return fs::is_directory(path);
-}
+bool is_result(const std::string& path) { return fs::is_directory(path); }
 
 }  // namespace
 

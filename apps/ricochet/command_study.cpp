@@ -71,9 +71,7 @@ void print_results(const std::string& directory, const StudyResults& results) {
 
 }  // namespace
 
-void describe_study(const std::string& directory) {
-  print_results(directory, make_study_table(read_study(directory)));
-}
+void describe_study(const std::string& directory) { print_results(directory, make_study_table(read_study(directory))); }
 
 int study(const StudyArguments& given) {
   const StudyArguments arguments = with_directory(given);

@@ -26,12 +26,8 @@ std::string sentence(std::string text) {
   return roff(text);
 }
 
-std::string italic(const std::string& text) {
-  return fmt::format("\\fI{}\\fP", roff(text));
-}
-std::string bold(const std::string& text) {
-  return fmt::format("\\fB{}\\fP", roff(text));
-}
+std::string italic(const std::string& text) { return fmt::format("\\fI{}\\fP", roff(text)); }
+std::string bold(const std::string& text) { return fmt::format("\\fB{}\\fP", roff(text)); }
 
 /// Returns "-o DIR, --output DIR".
 std::string title_of(const DescribedOption& option) {

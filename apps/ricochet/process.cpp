@@ -70,9 +70,7 @@ void flush_standard_output() {
                                                   std::strerror(problem)));
 }
 
-bool standard_output_failed() {
-  return std::ferror(stdout) != 0;
-}
+bool standard_output_failed() { return std::ferror(stdout) != 0; }
 
 void refuse_empty_values(CLI::App& app) {
   const CLI::Validator given([](const std::string& value) { return value.empty() ? "the value is empty" : ""; }, "");

@@ -119,16 +119,10 @@ void wait_for_stop_signals(const char* program_name) {
   }
 }
 
-void set_signal_program_name(const char* program_name) {
-  message_prefix = program_name;
-}
+void set_signal_program_name(const char* program_name) { message_prefix = program_name; }
 
-void remove_step_time_limit() {
-  steps_end = true;
-}
+void remove_step_time_limit() { steps_end = true; }
 
-int stop_signal() {
-  return received;
-}
+int stop_signal() { return received; }
 
 }  // namespace ricochet::program

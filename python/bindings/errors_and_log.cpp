@@ -9,9 +9,7 @@ namespace ricochet::python {
 namespace {
 
 /// Returns a function of the package, by module and name. The module is loaded, as the package has loaded this one.
-py::object function(const char* module, const char* name) {
-  return py::module_::import(module).attr(name);
-}
+py::object function(const char* module, const char* name) { return py::module_::import(module).attr(name); }
 
 /// Decodes a message, which may quote invalid UTF-8 from damaged files.
 py::object readable(const std::string& text) {
@@ -44,9 +42,7 @@ void hand_to_python(log::Level level, const std::string& message) {
 
 }  // namespace
 
-void bind_errors(py::module_&) {
-  py::register_exception_translator(translate);
-}
+void bind_errors(py::module_&) { py::register_exception_translator(translate); }
 
 void bind_log(py::module_& module) {
   log::set_sink(hand_to_python);

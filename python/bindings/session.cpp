@@ -113,9 +113,7 @@ class OpenSession {
 };
 
 /// Returns the number of nodes of cells; those of rigid bodies follow them and are shown as obstacles.
-Index nodes_of(const SemidiscreteProblem& problem) {
-  return problem.cell_node_count();
-}
+Index nodes_of(const SemidiscreteProblem& problem) { return problem.cell_node_count(); }
 
 /// Returns a vector of the state as nodes × dimension.
 template <class Choose>
@@ -144,9 +142,7 @@ Vector dofs_of(OpenSession& open, const Numbers& numbers, Vector others, const c
   return others;
 }
 
-Vector no_force(OpenSession& open) {
-  return Vector::Zero(open.problem().dof_count());
-}
+Vector no_force(OpenSession& open) { return Vector::Zero(open.problem().dof_count()); }
 
 py::array_t<double> contact_places(OpenSession& open) {
   const SemidiscreteProblem& problem = open.problem();

@@ -49,8 +49,6 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexce
 
 namespace ricochet::test_support {
 
-long allocation_count() {
-  return count;
-}
+long allocation_count() { return count; }
 
 }  // namespace ricochet::test_support

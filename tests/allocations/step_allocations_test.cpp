@@ -43,9 +43,7 @@ struct Variant {
   bool moving = false;    ///< the obstacle drifts and, in 3D, rotates
 };
 
-void PrintTo(const Variant& variant, std::ostream* stream) {
-  *stream << variant.name;
-}
+void PrintTo(const Variant& variant, std::ostream* stream) { *stream << variant.name; }
 
 std::vector<Variant> variants() {
   const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";

@@ -22,9 +22,7 @@ const Communicator& world() {
   return ranks;
 }
 
-Mesh box() {
-  return make_box_mesh(BoxMesh{CellShape::tetrahedron, {6, 5, 4}, 1, 0.1, {}});
-}
+Mesh box() { return make_box_mesh(BoxMesh{CellShape::tetrahedron, {6, 5, 4}, 1, 0.1, {}}); }
 
 /// The nodes of each rank, ascending, by a division of the cells.
 std::vector<std::vector<std::int64_t>> nodes_of_ranks(const Mesh& mesh, const std::vector<int>& rank_of_cell) {

@@ -19,9 +19,7 @@ namespace {
 /// Position of a node in half box widths, so that midpoints are integers as well.
 using LatticePoint = std::array<int, 3>;
 
-LatticePoint corner(int k) {
-  return {2 * (k & 1), 2 * ((k >> 1) & 1), 2 * ((k >> 2) & 1)};
-}
+LatticePoint corner(int k) { return {2 * (k & 1), 2 * ((k >> 1) & 1), 2 * ((k >> 2) & 1)}; }
 
 /// Returns the cells of one box as lists of its corners (numbered by their bits), positively oriented.
 std::vector<std::vector<int>> cells_of_box(CellShape shape, bool flipped) {
@@ -194,9 +192,7 @@ BoxMesh box_of(CellShape shape, std::vector<int> counts) {
   return box;
 }
 
-Mesh make_box_mesh(const BoxMesh& box) {
-  return Builder(box).build();
-}
+Mesh make_box_mesh(const BoxMesh& box) { return Builder(box).build(); }
 
 Mesh make_checked_box_mesh(const BoxMesh& box) {
   Mesh mesh = make_box_mesh(box);
@@ -247,9 +243,7 @@ PointMap ball_map(const Vector& centre) {
   };
 }
 
-Material test_material() {
-  return {"body", 1.7, make_linear_elasticity(1.3, 0.8)};
-}
+Material test_material() { return {"body", 1.7, make_linear_elasticity(1.3, 0.8)}; }
 
 std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree, PlaneState plane) {
   auto test = std::make_unique<MeshedBody>();

@@ -75,9 +75,7 @@ inline bool same(const SparseMatrix& a, const SparseMatrix& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && Matrix(a) == Matrix(b);
 }
 
-inline bool same(const Vector& a, const Vector& b) {
-  return a.size() == b.size() && a == b;
-}
+inline bool same(const Vector& a, const Vector& b) { return a.size() == b.size() && a == b; }
 
 inline bool same(const FclibSolution& a, const FclibSolution& b) {
   return same(a.motion, b.motion) && same(a.reaction, b.reaction) && same(a.multiplier, b.multiplier);

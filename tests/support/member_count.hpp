@@ -13,9 +13,7 @@ struct AnyMember {
 
 template <class Aggregate, std::size_t... index>
 [[nodiscard]] constexpr bool has_members(std::index_sequence<index...>) {
-  return requires {
-    Aggregate{(void(index), AnyMember{})...};
-  };
+  return requires { Aggregate{(void(index), AnyMember{})...}; };
 }
 
 /// Number of members, plus one for each base.

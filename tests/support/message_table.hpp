@@ -19,9 +19,7 @@ struct MessageRow {
 std::vector<MessageRow> read_messages(const std::string& file, std::map<std::string, std::string> texts = {});
 
 /// Names of tests, for INSTANTIATE_TEST_SUITE_P.
-inline std::string name_of_row(const testing::TestParamInfo<MessageRow>& parameter) {
-  return parameter.param.name;
-}
+inline std::string name_of_row(const testing::TestParamInfo<MessageRow>& parameter) { return parameter.param.name; }
 /// A failing test prints its row.
 void PrintTo(const MessageRow& row, std::ostream* stream);
 

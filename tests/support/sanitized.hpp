@@ -13,9 +13,7 @@ inline constexpr bool is_sanitized = false;
 #endif
 
 /// Returns the number of random problems of each kind.
-constexpr unsigned seeds(unsigned count) {
-  return is_sanitized ? (count + 9) / 10 : count;
-}
+constexpr unsigned seeds(unsigned count) { return is_sanitized ? (count + 9) / 10 : count; }
 /// Returns it as well, or `count` times RICOCHET_RANDOM_CASES if that is set.
 inline unsigned samples(unsigned count) {
   const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");

@@ -135,9 +135,7 @@ bool takes_friction(const std::string& scheme) {
          scheme != "nitsche" && scheme != "nonsmooth-generalized-alpha";
 }
 
-bool takes_damping(const std::string& scheme) {
-  return scheme != "nonsmooth-generalized-alpha";
-}
+bool takes_damping(const std::string& scheme) { return scheme != "nonsmooth-generalized-alpha"; }
 
 bool takes_stiffness_damping(const std::string& scheme) {
   return takes_damping(scheme) && scheme != "mean-reaction" && scheme != "reduced-midpoint" &&
@@ -149,9 +147,7 @@ bool Discretization::is_possible() const {
   return std::ranges::find(masses, mass) != masses.end();
 }
 
-std::string Discretization::time() const {
-  return time_of(scheme);
-}
+std::string Discretization::time() const { return time_of(scheme); }
 
 std::string Discretization::contact() const {
   return std::string(takes_friction(scheme) ? "friction = 0.3\n" : "") + "multipliers = \"" + multipliers +

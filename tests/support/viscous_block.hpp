@@ -26,9 +26,7 @@ inline std::string block(int dimension) {
 inline constexpr double young = 100.0, poisson = 0.3, shear = young / (2.0 * (1.0 + poisson));
 inline constexpr double lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
 
-inline std::string list(const std::vector<double>& values) {
-  return fmt::format("[{}]", fmt::join(values, ", "));
-}
+inline std::string list(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 
 inline std::string material(const std::string& law, const std::vector<RelaxationBranch>& branches,
                             double density = 1.0) {

@@ -27,9 +27,7 @@ struct Problem {
   std::vector<std::pair<double, double>> contacts;  ///< begin and end
 };
 
-double heaviside(double r) {
-  return r > 0.0 ? 1.0 : 0.0;
-}
+double heaviside(double r) { return r > 0.0 ? 1.0 : 0.0; }
 
 /// E = 900, ρ = 1, L = 10, gap 5, v = −10: contact on [1/2, 7/6] under the pressure ρcv = 300, then a uniform rebound
 /// at +10.
@@ -184,9 +182,7 @@ Errors solve(const Problem& problem, int cells, int degree, bool triangles, cons
   return e;
 }
 
-double order(double coarse, double fine) {
-  return fine > 0.0 ? std::log2(coarse / fine) : 0.0;
-}
+double order(double coarse, double fine) { return fine > 0.0 ? std::log2(coarse / fine) : 0.0; }
 
 /// Scheme and parameters in `[time]`, on one line.
 std::string scheme_name(const std::string& text) {

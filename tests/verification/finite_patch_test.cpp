@@ -26,9 +26,7 @@ Eigen::Matrix3d sheared(double gamma) {
   f(0, 1) = gamma;
   return f;
 }
-Eigen::Matrix3d left(double gamma) {
-  return sheared(gamma) * sheared(gamma).transpose();
-}
+Eigen::Matrix3d left(double gamma) { return sheared(gamma) * sheared(gamma).transpose(); }
 
 constexpr double lambda = 1.3, mu = 0.8, c10 = 0.3, c01 = 0.1;
 

@@ -97,9 +97,7 @@ TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
   }
 }
 
-std::string cases() {
-  return source_path("cases/");
-}
+std::string cases() { return source_path("cases/"); }
 
 /// Results of throwing the disc of cases/oblique.
 struct Throw {

@@ -27,9 +27,7 @@ ImpactRecorder make_recorder(CaseRun& run) {
           bodies.of_node, wave_crossing_times(run.model().body, bodies)};
 }
 
-double method_energy(CaseRun& run) {
-  return run.simulation().account().method_energy(run.state());
-}
+double method_energy(CaseRun& run) { return run.simulation().account().method_energy(run.state()); }
 
 std::vector<Impact> impacts_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   CaseRun run(text, overrides);

@@ -51,13 +51,9 @@ Vector nodal(const CaseRun& run, const Vector& normal, const Vector& tangential)
   return force;
 }
 
-std::vector<std::string> singular_masses() {
-  return masses_of("reduced-kane");
-}
+std::vector<std::string> singular_masses() { return masses_of("reduced-kane"); }
 
-std::vector<double> steps() {
-  return {0.01, 0.1, 1.0};
-}
+std::vector<double> steps() { return {0.01, 0.1, 1.0}; }
 
 /// Masses of bodies that have contact on all sides.
 bool is_possible(const ThrownBody& body, const std::string& mass) {

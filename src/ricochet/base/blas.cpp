@@ -41,9 +41,7 @@ void prepare_blas() {
   static_cast<void>(done);
 }
 
-bool memory_is_limited() {
-  return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA);
-}
+bool memory_is_limited() { return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA); }
 
 void reserve_blas_memory(int threads) {
   if (!memory_is_limited()) return;

@@ -10,8 +10,6 @@ BlockedSignals::BlockedSignals() {
   pthread_sigmask(SIG_BLOCK, &from_outside, &before_);
 }
 
-BlockedSignals::~BlockedSignals() {
-  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
+BlockedSignals::~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 }  // namespace ricochet

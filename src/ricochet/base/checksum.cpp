@@ -11,8 +11,6 @@ Checksum& Checksum::add_bytes(const void* bytes, std::size_t size) {
   return *this;
 }
 
-std::string Checksum::text() const {
-  return fmt::format("{:08x} of {} bytes", value_, size_);
-}
+std::string Checksum::text() const { return fmt::format("{:08x} of {} bytes", value_, size_); }
 
 }  // namespace ricochet

@@ -82,17 +82,11 @@ bool query_exit(pid_t process, int options, int& problem) {
 
 }  // namespace
 
-bool ChildResult::is_absent() const {
-  return spawn_error == ENOENT || (spawn_error == 0 && exit_status() == 127);
-}
+bool ChildResult::is_absent() const { return spawn_error == ENOENT || (spawn_error == 0 && exit_status() == 127); }
 
-bool ChildResult::succeeded() const {
-  return spawn_error == 0 && exit_status() == 0;
-}
+bool ChildResult::succeeded() const { return spawn_error == 0 && exit_status() == 0; }
 
-int ChildResult::exit_status() const {
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
+int ChildResult::exit_status() const { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
 
 std::string ChildResult::description() const {
   if (spawn_error != 0) return fmt::format("cannot be run: {}", std::strerror(spawn_error));

@@ -26,9 +26,7 @@ struct NumberedChild {
   RunningChild process;
 };
 
-void pause_between_polls() {
-  std::this_thread::sleep_for(std::chrono::duration<double>(poll_interval));
-}
+void pause_between_polls() { std::this_thread::sleep_for(std::chrono::duration<double>(poll_interval)); }
 
 void remove_ended(std::list<NumberedChild>& running, const PoolWork& work) {
   for (auto child = running.begin(); child != running.end();) {

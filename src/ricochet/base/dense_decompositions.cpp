@@ -6,67 +6,43 @@ namespace ricochet {
 
 SmallCholesky::SmallCholesky(const Matrix& matrix) : factor_(matrix) {}
 
-Matrix SmallCholesky::lower() const {
-  return factor_.matrixL();
-}
+Matrix SmallCholesky::lower() const { return factor_.matrixL(); }
 
-Matrix SmallCholesky::solve(const Matrix& right) const {
-  return factor_.solve(right);
-}
+Matrix SmallCholesky::solve(const Matrix& right) const { return factor_.solve(right); }
 
-Matrix SmallCholesky::solve_lower(const Matrix& right) const {
-  return factor_.matrixL().solve(right);
-}
+Matrix SmallCholesky::solve_lower(const Matrix& right) const { return factor_.matrixL().solve(right); }
 
 PivotedLu::PivotedLu(const Matrix& matrix) : factor_(matrix) {}
 
-Vector PivotedLu::solve(const Vector& right) const {
-  return factor_.solve(right);
-}
+Vector PivotedLu::solve(const Vector& right) const { return factor_.solve(right); }
 
-Matrix PivotedLu::inverse() const {
-  return factor_.inverse();
-}
+Matrix PivotedLu::inverse() const { return factor_.inverse(); }
 
 PivotedCholesky::PivotedCholesky(const Matrix& matrix) : factor_(matrix) {}
 
-Vector PivotedCholesky::solve(const Vector& right) const {
-  return factor_.solve(right);
-}
+Vector PivotedCholesky::solve(const Vector& right) const { return factor_.solve(right); }
 
-Matrix PivotedCholesky::solve(const Matrix& right) const {
-  return factor_.solve(right);
-}
+Matrix PivotedCholesky::solve(const Matrix& right) const { return factor_.solve(right); }
 
-Vector PivotedCholesky::pivots() const {
-  return factor_.vectorD();
-}
+Vector PivotedCholesky::pivots() const { return factor_.vectorD(); }
 
-Vector PivotedCholesky::permuted(const Vector& values) const {
-  return factor_.transpositionsP() * values;
-}
+Vector PivotedCholesky::permuted(const Vector& values) const { return factor_.transpositionsP() * values; }
 
 PivotedQr::PivotedQr(const Matrix& matrix, double threshold) : factor_(matrix.rows(), matrix.cols()) {
   if (threshold > 0.0) factor_.setThreshold(threshold);
   factor_.compute(matrix);
 }
 
-Vector PivotedQr::solve(const Vector& right) const {
-  return factor_.solve(right);
-}
+Vector PivotedQr::solve(const Vector& right) const { return factor_.solve(right); }
 
-Matrix PivotedQr::solve(const Matrix& right) const {
-  return factor_.solve(right);
-}
+Matrix PivotedQr::solve(const Matrix& right) const { return factor_.solve(right); }
 
 LeastNormSolver::LeastNormSolver(const Matrix& matrix, double threshold) : factor_(matrix.rows(), matrix.cols()) {
   if (threshold > 0.0) factor_.setThreshold(threshold);
   factor_.compute(matrix);
 }
 
-Vector LeastNormSolver::solve(const Vector& right) const {
-  return factor_.solve(right);
-}
+Vector LeastNormSolver::solve(const Vector& right) const { return factor_.solve(right); }
 
 Matrix upper_of_qr(const Matrix& matrix) {
   return Eigen::HouseholderQR<Matrix>(matrix).matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();

@@ -139,18 +139,10 @@ double Expression::operator()(double x, double y, double z, double t) const {
   return value;
 }
 
-bool Expression::depends_on_time() const {
-  return implementation_->uses_time;
-}
-bool Expression::depends_on_position() const {
-  return implementation_->uses_position;
-}
-bool Expression::depends_on_z() const {
-  return implementation_->uses_z;
-}
-const std::string& Expression::text() const {
-  return implementation_->text;
-}
+bool Expression::depends_on_time() const { return implementation_->uses_time; }
+bool Expression::depends_on_position() const { return implementation_->uses_position; }
+bool Expression::depends_on_z() const { return implementation_->uses_z; }
+const std::string& Expression::text() const { return implementation_->text; }
 bool Expression::operator==(const Expression& other) const {
   const Implementation& own = *implementation_;
   const Implementation& its = *other.implementation_;

@@ -11,9 +11,7 @@ class FlushDenormals {
   FlushDenormals() : before_(__builtin_ia32_stmxcsr()) {
     __builtin_ia32_ldmxcsr(before_ | flush_results | zero_operands);
   }
-  ~FlushDenormals() {
-    __builtin_ia32_ldmxcsr(before_);
-  }
+  ~FlushDenormals() { __builtin_ia32_ldmxcsr(before_); }
 #else
   FlushDenormals() = default;
   ~FlushDenormals() = default;

@@ -42,28 +42,26 @@ enum class InstructionSet {
 /// `instruction_set()`. `parameters` are in parentheses, as are `arguments`, their names. GCC's target_clones would
 /// need less code, but clang lacks it, and the user could not choose the version.
 #if defined(__x86_64__) && defined(__GNUC__)
-#define RICOCHET_EACH_INSTRUCTION_SET(Result, function, parameters, arguments)           \
-  RICOCHET_PART_OF_CALLER static Result function##_body parameters;                      \
-  __attribute__((target("arch=x86-64-v4"))) static Result function##_avx512 parameters { \
-    return function##_body arguments;                                                    \
-  }                                                                                      \
-  __attribute__((target("arch=x86-64-v3"))) static Result function##_avx2 parameters {   \
-    return function##_body arguments;                                                    \
-  }                                                                                      \
-  __attribute__((noinline)) static Result function##_baseline parameters {               \
-    return function##_body arguments;                                                    \
-  }                                                                                      \
-  Result function parameters {                                                           \
-    switch (instruction_set()) {                                                         \
-      case InstructionSet::avx512:                                                       \
-        return function##_avx512 arguments;                                              \
-      case InstructionSet::avx2:                                                         \
-        return function##_avx2 arguments;                                                \
-      case InstructionSet::baseline:                                                     \
-        break;                                                                           \
-    }                                                                                    \
-    return function##_baseline arguments;                                                \
-  }                                                                                      \
+#define RICOCHET_EACH_INSTRUCTION_SET(Result, function, parameters, arguments)                                 \
+  RICOCHET_PART_OF_CALLER static Result function##_body parameters;                                            \
+  __attribute__((target("arch=x86-64-v4"))) static Result function##_avx512 parameters {                       \
+    return function##_body arguments;                                                                          \
+  }                                                                                                            \
+  __attribute__((target("arch=x86-64-v3"))) static Result function##_avx2 parameters {                         \
+    return function##_body arguments;                                                                          \
+  }                                                                                                            \
+  __attribute__((noinline)) static Result function##_baseline parameters { return function##_body arguments; } \
+  Result function parameters {                                                                                 \
+    switch (instruction_set()) {                                                                               \
+      case InstructionSet::avx512:                                                                             \
+        return function##_avx512 arguments;                                                                    \
+      case InstructionSet::avx2:                                                                               \
+        return function##_avx2 arguments;                                                                      \
+      case InstructionSet::baseline:                                                                           \
+        break;                                                                                                 \
+    }                                                                                                          \
+    return function##_baseline arguments;                                                                      \
+  }                                                                                                            \
   Result function##_body parameters
 #else
 #define RICOCHET_EACH_INSTRUCTION_SET(Result, function, parameters, arguments) Result function parameters

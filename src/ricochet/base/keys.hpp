@@ -71,9 +71,7 @@ struct Key {
 };
 
 /// Properties of a key that must be given.
-[[nodiscard]] inline Key required(Range range = {}) {
-  return {.required = true, .range = range};
-}
+[[nodiscard]] inline Key required(Range range = {}) { return {.required = true, .range = range}; }
 /// Key of a type; `properties` is everything that is not among the other arguments.
 [[nodiscard]] Key typed_key(std::string name, KeyType type, std::string unit, Key properties, std::string doc);
 [[nodiscard]] Key number_key(std::string name, std::string unit, Key properties, std::string doc);

@@ -52,9 +52,7 @@ std::string& run_case_file() {
   return path;
 }
 
-spdlog::level::level_enum spdlog_level(Level level) {
-  return levels.at(std::size_t(level)).second;
-}
+spdlog::level::level_enum spdlog_level(Level level) { return levels.at(std::size_t(level)).second; }
 
 void write_message(Level level, const std::string& message) {
   if (!enabled(level)) return;
@@ -64,9 +62,7 @@ void write_message(Level level, const std::string& message) {
 
 }  // namespace
 
-void set_sink(Sink sink) {
-  other_sink() = std::move(sink);
-}
+void set_sink(Sink sink) { other_sink() = std::move(sink); }
 
 Level parse_level(std::string_view name) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -76,26 +72,16 @@ Level parse_level(std::string_view name) {
               fmt::format("unknown log level \"{}\"; use trace, debug, info, warning, error or off", name));
 }
 
-void set_level(Level level) {
-  logger().set_level(spdlog_level(level));
-}
-bool enabled(Level level) {
-  return logger().should_log(spdlog_level(level));
-}
+void set_level(Level level) { logger().set_level(spdlog_level(level)); }
+bool enabled(Level level) { return logger().should_log(spdlog_level(level)); }
 
-void debug(const std::string& message) {
-  write_message(Level::debug, message);
-}
-void info(const std::string& message) {
-  write_message(Level::info, message);
-}
+void debug(const std::string& message) { write_message(Level::debug, message); }
+void info(const std::string& message) { write_message(Level::info, message); }
 void warning(const std::string& message) {
   if (collected_warnings() != nullptr) collected_warnings()->push_back(message);
   write_message(Level::warning, with_run_name(message));
 }
-void error(const std::string& message) {
-  write_message(Level::error, with_run_name(message));
-}
+void error(const std::string& message) { write_message(Level::error, with_run_name(message)); }
 
 void set_run_name(std::string name, std::string case_file) {
   run_name() = std::move(name);
@@ -111,17 +97,13 @@ std::string with_run_name(const std::string& message) {
 CollectWarnings::CollectWarnings(std::vector<std::string>& list) : before_(collected_warnings()) {
   collected_warnings() = &list;
 }
-CollectWarnings::~CollectWarnings() {
-  collected_warnings() = before_;
-}
+CollectWarnings::~CollectWarnings() { collected_warnings() = before_; }
 
 Silence::Silence() {
   before_ = Level::trace;
   while (!enabled(before_)) before_ = static_cast<Level>(int(before_) + 1);
   set_level(Level::off);
 }
-Silence::~Silence() {
-  set_level(before_);
-}
+Silence::~Silence() { set_level(before_); }
 
 }  // namespace ricochet::log

@@ -53,8 +53,6 @@ void* allocate_large(std::size_t bytes) {
   return memory;
 }
 
-void free_large(void* memory) {
-  std::free(memory);
-}
+void free_large(void* memory) { std::free(memory); }
 
 }  // namespace ricochet

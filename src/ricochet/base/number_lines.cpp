@@ -16,9 +16,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n\v\f";
 
-bool is_one_of(char c, std::string_view these) {
-  return these.find(c) != std::string_view::npos;
-}
+bool is_one_of(char c, std::string_view these) { return these.find(c) != std::string_view::npos; }
 
 /// Returns whether c is an ASCII letter or a byte of a character outside ASCII.
 bool is_letter(char c) {
@@ -55,9 +53,7 @@ std::string_view TextWords::next() {
   return {word_, std::size_t(at_ - word_)};
 }
 
-void TextWords::skip_line() {
-  at_ = std::find(at_, end_, '\n');
-}
+void TextWords::skip_line() { at_ = std::find(at_, end_, '\n'); }
 
 double TextWords::number() {
   const std::string_view word = next();

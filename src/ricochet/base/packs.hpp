@@ -104,9 +104,7 @@ void run_in_packs(const Work& work) {
   work.template run<4>();
 }
 /// Returns the W of run_in_packs.
-[[nodiscard]] inline int pack_width() {
-  return instruction_set() == InstructionSet::avx512 ? 8 : 4;
-}
+[[nodiscard]] inline int pack_width() { return instruction_set() == InstructionSet::avx512 ? 8 : 4; }
 inline constexpr int most_pack_width = 8;
 
 /// Calls work(count) with a compile-time constant from 1 to `most` ≤ 8 for a run-time count; does nothing for 0. `work`

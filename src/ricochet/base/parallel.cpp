@@ -144,9 +144,7 @@ void set_thread_count(int count) {
   configured_thread_count = count;
 }
 
-int thread_count() {
-  return configured_thread_count;
-}
+int thread_count() { return configured_thread_count; }
 
 void detail::run_ranges(Index count, const RangeWork& work) {
   if (count <= 0) return;

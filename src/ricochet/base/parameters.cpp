@@ -52,13 +52,9 @@ bool fits(const Key& key, const Parameters::Value& value) {
 
 }  // namespace
 
-double Parameters::number(const std::string& name) const {
-  return value_of<double>(values_, name);
-}
+double Parameters::number(const std::string& name) const { return value_of<double>(values_, name); }
 
-const std::string& Parameters::text(const std::string& name) const {
-  return value_of<std::string>(values_, name);
-}
+const std::string& Parameters::text(const std::string& name) const { return value_of<std::string>(values_, name); }
 
 const std::vector<double>& Parameters::vector(const std::string& name) const {
   return value_of<std::vector<double>>(values_, name);

@@ -13,13 +13,9 @@ long& revision() {
 
 }  // namespace
 
-long registry_revision() {
-  return revision();
-}
+long registry_revision() { return revision(); }
 
-void raise_registry_revision() {
-  ++revision();
-}
+void raise_registry_revision() { ++revision(); }
 
 void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner, bool reads_groups) {
   const auto refuse = [&](const Key& key, const std::string& why) {

@@ -16,9 +16,7 @@ template <class Value>
   for (const Index i : indices) result.push_back(values[std::size_t(i)]);
   return result;
 }
-[[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& indices) {
-  return values(indices);
-}
+[[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& indices) { return values(indices); }
 [[nodiscard]] inline Points chosen_columns(const Points& values, const std::vector<Index>& indices) {
   return values(Eigen::all, indices);
 }

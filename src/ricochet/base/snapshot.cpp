@@ -22,9 +22,7 @@ const Kind& Snapshot::find(const std::string& name, const char* kind) const {
   return *value;
 }
 
-const Vector& Snapshot::reals(const std::string& name) const {
-  return find<Vector>(name, "numbers");
-}
+const Vector& Snapshot::reals(const std::string& name) const { return find<Vector>(name, "numbers"); }
 
 const Vector& Snapshot::reals(const std::string& name, Index size, Index other_size) const {
   const Vector& values = reals(name);
@@ -33,9 +31,7 @@ const Vector& Snapshot::reals(const std::string& name, Index size, Index other_s
   return values;
 }
 
-const Snapshot::Integers& Snapshot::integers(const std::string& name) const {
-  return find<Integers>(name, "integers");
-}
+const Snapshot::Integers& Snapshot::integers(const std::string& name) const { return find<Integers>(name, "integers"); }
 
 const Snapshot::Integers& Snapshot::integers(const std::string& name, std::int64_t least, std::int64_t most) const {
   const Integers& values = integers(name);
@@ -50,9 +46,7 @@ std::int64_t Snapshot::integer(const std::string& name) const {
   return values.front();
 }
 
-const Snapshot::Texts& Snapshot::texts(const std::string& name) const {
-  return find<Texts>(name, "texts");
-}
+const Snapshot::Texts& Snapshot::texts(const std::string& name) const { return find<Texts>(name, "texts"); }
 
 const std::string& Snapshot::text(const std::string& name) const {
   const Texts& values = texts(name);
@@ -73,13 +67,9 @@ double NumberVisitor::whole(double number, double least, double most) const {
   return number;
 }
 
-SnapshotVisitor Snapshot::saver(const std::string& name) {
-  return {this, nullptr, name};
-}
+SnapshotVisitor Snapshot::saver(const std::string& name) { return {this, nullptr, name}; }
 
-SnapshotVisitor Snapshot::loader(const std::string& name) const {
-  return {nullptr, this, name};
-}
+SnapshotVisitor Snapshot::loader(const std::string& name) const { return {nullptr, this, name}; }
 
 std::string SnapshotVisitor::name_of(const std::string& key) const {
   return name_.empty() || key.empty() ? name_ + key : name_ + "." + key;

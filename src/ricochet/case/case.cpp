@@ -7,9 +7,7 @@
 
 namespace ricochet {
 
-std::string SourceLocation::text() const {
-  return line > 0 ? fmt::format("{}:{}:{}", file, line, column) : file;
-}
+std::string SourceLocation::text() const { return line > 0 ? fmt::format("{}:{}:{}", file, line, column) : file; }
 
 SourceLocation Case::where(const std::string& key_path) const {
   std::string enclosing = key_path;
@@ -26,8 +24,6 @@ long step_count(const TimeSection& time) {
   return std::max(1L, long(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 
-double run_end(const TimeSection& time) {
-  return time.adaptive ? time.end : double(step_count(time)) * time.step;
-}
+double run_end(const TimeSection& time) { return time.adaptive ? time.end : double(step_count(time)) * time.step; }
 
 }  // namespace ricochet

@@ -58,9 +58,7 @@ template <class Value>
   if (is_one_of<Value, std::vector<Expression>>) return KeyType::formulas;
   if (is_one_of<Value, std::map<std::string, std::string>>) return KeyType::conditions;
   static_assert(std::is_class_v<Value> || is_one_of<Value, double, int, long, bool>, "keys have no such values");
-  return requires(Value value) {
-    value.front();
-  }
+  return requires(Value value) { value.front(); }
   ? KeyType::tables : KeyType::table;
 }
 

@@ -29,9 +29,7 @@ std::string join_rest(const std::vector<std::string>& parts, std::size_t first) 
   return text;
 }
 
-[[noreturn]] void refuse(const std::string& message) {
-  throw Error(ErrorKind::invalid_input, message);
-}
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::invalid_input, message); }
 
 // Reads the part of a path that selects one entry of a list or one named section.
 std::string entry_of(const Section& section, const std::vector<std::string>& parts) {

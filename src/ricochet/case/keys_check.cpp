@@ -39,9 +39,7 @@ TomlNode default_node(const Key& key, const SourceLocation& location) {
   return node;
 }
 
-bool is_key_of(const std::vector<Key>& keys, const TomlNode& member) {
-  return find_key(keys, member.key) != nullptr;
-}
+bool is_key_of(const std::vector<Key>& keys, const TomlNode& member) { return find_key(keys, member.key) != nullptr; }
 
 // Tests for an unknown key that was probably meant to be this one, whose absence is then not reported separately.
 bool is_misspelt(const Key& key, const std::vector<Key>& keys, const TomlNode& table) {
@@ -384,8 +382,6 @@ void TreeChecker::report_missing_section(const Section& section) {
 
 }  // namespace
 
-void check_tree(TomlNode& root, Problems& problems) {
-  TreeChecker(root, problems).run();
-}
+void check_tree(TomlNode& root, Problems& problems) { TreeChecker(root, problems).run(); }
 
 }  // namespace ricochet

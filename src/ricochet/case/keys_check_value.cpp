@@ -256,8 +256,6 @@ void ValueCheck::run() {
 
 }  // namespace
 
-void check_value(const Key& key, TomlNode& value, Problems& problems) {
-  ValueCheck(key, value, problems).run();
-}
+void check_value(const Key& key, TomlNode& value, Problems& problems) { ValueCheck(key, value, problems).run(); }
 
 }  // namespace ricochet

@@ -189,9 +189,7 @@ Quantity parse_history_value(const std::string& text) {
 
 }  // namespace
 
-std::span<const QuantityForm> quantity_forms() {
-  return forms;
-}
+std::span<const QuantityForm> quantity_forms() { return forms; }
 
 Quantity parse_quantity(const std::string& text) {
   if (text.starts_with(history_prefix)) return parse_history_value(text);

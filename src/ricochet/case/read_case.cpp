@@ -64,9 +64,7 @@ void list_values(const TomlNode& node, const std::string& path, Case& result) {
   }
 }
 
-bool is_identifier(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
+bool is_identifier(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 /// Returns whether the name is a word of a text below a node.
 bool mentions(const TomlNode& node, const std::string& name) {

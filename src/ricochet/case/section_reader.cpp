@@ -85,9 +85,7 @@ void SectionReader::read(const Key& key, std::vector<std::string>& value) const 
   for (const TomlNode& entry : usable(key.name)->children) value.push_back(entry.text);
 }
 
-void SectionReader::read(const Key& key, Expression& value) const {
-  value = expression(key, *usable(key.name));
-}
+void SectionReader::read(const Key& key, Expression& value) const { value = expression(key, *usable(key.name)); }
 
 void SectionReader::read(const Key& key, std::vector<Expression>& value) const {
   const TomlNode& node = *usable(key.name);

@@ -25,9 +25,7 @@ std::pair<RotatingNormal::Vector3, RotatingNormal::Vector3> axes_across(const Ro
 
 }  // namespace
 
-RotatingNormal::RotatingNormal(const Vector& direction) {
-  constant_.head(direction.size()) = direction;
-}
+RotatingNormal::RotatingNormal(const Vector& direction) { constant_.head(direction.size()) = direction; }
 
 RotatingNormal::RotatingNormal(const DisplacementSpace& space, const std::vector<Index>& facets,
                                const Vector& direction) {

@@ -42,9 +42,7 @@ Processes::Processes(int& count, char**& arguments) {
   MPI_Comm_dup(MPI_COMM_WORLD, &error_communicator);
 }
 
-Processes::~Processes() {
-  MPI_Finalize();
-}
+Processes::~Processes() { MPI_Finalize(); }
 
 bool Processes::all_arrive(double seconds) {
   MPI_Request request = MPI_REQUEST_NULL;

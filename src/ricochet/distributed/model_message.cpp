@@ -11,12 +11,8 @@ namespace ricochet {
 void persist(Archive& archive, CellBlock& block) {
   archive.all(block.shape, block.nodes_per_cell, block.nodes, block.tags);
 }
-void persist(Archive& archive, Group& group) {
-  archive.all(group.name, group.tag, group.dimension, group.members);
-}
-void persist(Archive& archive, MeshPart& part) {
-  archive.all(part.name, part.first_node, part.node_count, part.cells);
-}
+void persist(Archive& archive, Group& group) { archive.all(group.name, group.tag, group.dimension, group.members); }
+void persist(Archive& archive, MeshPart& part) { archive.all(part.name, part.first_node, part.node_count, part.cells); }
 void persist(Archive& archive, Mesh& mesh) {
   archive.all(mesh.source, mesh.dimension, mesh.degree, mesh.nodes, mesh.node_tags, mesh.cells, mesh.facets,
               mesh.groups, mesh.parts, mesh.is_piece);
@@ -25,33 +21,23 @@ void persist(Archive& archive, DisplacementSpace& space) {
   archive.all(space.dimension, space.degree, space.nodes, space.cells, space.facets, space.number, space.glued,
               space.nodes_without_cells);
 }
-void persist(Archive& archive, CellFacet& facet) {
-  archive.all(facet.block, facet.cell, facet.local);
-}
-void persist(Archive& archive, ConnectedBodies& bodies) {
-  archive.all(bodies.count, bodies.of_node, bodies.of_cell);
-}
+void persist(Archive& archive, CellFacet& facet) { archive.all(facet.block, facet.cell, facet.local); }
+void persist(Archive& archive, ConnectedBodies& bodies) { archive.all(bodies.count, bodies.of_node, bodies.of_cell); }
 void persist(Archive& archive, BodiesOfMesh& bodies) {
   archive.all(bodies.connected, bodies.names, bodies.crossing_times, bodies.sizes, bodies.boundary);
 }
-void persist(Archive& archive, HistoryBodies& bodies) {
-  archive.all(bodies.labels, bodies.of_node);
-}
+void persist(Archive& archive, HistoryBodies& bodies) { archive.all(bodies.labels, bodies.of_node); }
 void persist(Archive& archive, Probe& probe) {
   archive.all(probe.name, probe.node, probe.distance, probe.contact_node, probe.number);
 }
-void persist(Archive& archive, Column& column) {
-  archive.all(column.name, column.reduction);
-}
+void persist(Archive& archive, Column& column) { archive.all(column.name, column.reduction); }
 void persist(Archive& archive, ProbeTargets& targets) {
   archive.all(targets.probes, targets.positions, targets.columns, targets.nodes, targets.summed_forces);
 }
 void persist(Archive& archive, ModelSizes& sizes) {
   archive.all(sizes.nodes, sizes.cells, sizes.dofs, sizes.contact_points, sizes.supported_dofs, sizes.diameter);
 }
-void persist(Archive& archive, ContactScale& scale) {
-  archive.all(scale.body_size, scale.spacing);
-}
+void persist(Archive& archive, ContactScale& scale) { archive.all(scale.body_size, scale.spacing); }
 void persist(Archive& archive, StaticEquilibrium& equilibrium) {
   archive.all(equilibrium.displacement, equilibrium.normal_reaction);
 }

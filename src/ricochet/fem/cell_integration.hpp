@@ -11,9 +11,7 @@
 namespace ricochet {
 
 /// Circumference of the circle of a point of an axisymmetric body at the given distance from the axis.
-[[nodiscard]] inline double ring_length(double radius) {
-  return 2.0 * std::numbers::pi * radius;
-}
+[[nodiscard]] inline double ring_length(double radius) { return 2.0 * std::numbers::pi * radius; }
 
 /// Quadrature rule with the shape functions of geometry and displacement at its points.
 struct BlockIntegration {

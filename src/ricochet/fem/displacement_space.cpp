@@ -139,9 +139,7 @@ DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
   return space;
 }
 
-double extent(const Points& nodes) {
-  return (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
-}
+double extent(const Points& nodes) { return (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm(); }
 
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;

@@ -14,9 +14,7 @@
 namespace ricochet {
 
 /// Index of the pair i ≤ j; pair_number(0, n) is the number of pairs of n nodes.
-constexpr int pair_number(int i, int j) {
-  return j * (j + 1) / 2 + i;
-}
+constexpr int pair_number(int i, int j) { return j * (j + 1) / 2 + i; }
 
 /// Nodes of a hexahedron of degree 2.
 inline constexpr int most_cell_nodes = 27;

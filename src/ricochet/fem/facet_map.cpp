@@ -148,9 +148,7 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   }
 }
 
-PolynomialMap<3> FacetMap::map_of(Index facet) const {
-  return geometry(locate_facet(*body_.space, facet));
-}
+PolynomialMap<3> FacetMap::map_of(Index facet) const { return geometry(locate_facet(*body_.space, facet)); }
 
 double FacetMap::density(const PolynomialMap<3>::Evaluation& at) const {
   const auto& [along, across] = at.slopes;

@@ -74,9 +74,7 @@ inline double determinant_remainder(const Tensor& a) {
 }
 
 /// det(I + A) − 1, to the precision of A.
-inline double determinant_change(const Tensor& a) {
-  return a.trace() + determinant_remainder(a);
-}
+inline double determinant_change(const Tensor& a) { return a.trace() + determinant_remainder(a); }
 
 /// x − ln(1 + x), to the precision of x: with t = x/(2+x), ln(1+x) = 2(t + t³/3 + t⁵/5 + …).
 inline double logarithm_remainder(double x) {
@@ -88,9 +86,7 @@ inline double logarithm_remainder(double x) {
 }
 
 /// J − 1 as a function of s = J² − 1.
-inline double volume_change(double s) {
-  return s / (1.0 + std::sqrt(1.0 + s));
-}
+inline double volume_change(double s) { return s / (1.0 + std::sqrt(1.0 + s)); }
 
 /// Indices (i, j) of the components of a StressTangent.
 inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};

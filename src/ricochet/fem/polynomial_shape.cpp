@@ -6,9 +6,7 @@ namespace ricochet {
 
 namespace {
 
-double power(double x, int exponent) {
-  return exponent == 0 ? 1.0 : exponent == 1 ? x : x * x;
-}
+double power(double x, int exponent) { return exponent == 0 ? 1.0 : exponent == 1 ? x : x * x; }
 
 }  // namespace
 

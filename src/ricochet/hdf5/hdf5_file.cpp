@@ -127,13 +127,9 @@ bool Hdf5Reader::has(const std::string& name, bool group) const {
   return H5Iget_type(object) == (group ? H5I_GROUP : H5I_DATASET);
 }
 
-bool Hdf5Reader::has_group(const std::string& name) const {
-  return has(name, true);
-}
+bool Hdf5Reader::has_group(const std::string& name) const { return has(name, true); }
 
-bool Hdf5Reader::has_dataset(const std::string& name) const {
-  return has(name, false);
-}
+bool Hdf5Reader::has_dataset(const std::string& name) const { return has(name, false); }
 
 std::int64_t Hdf5Reader::size(const std::string& name) const {
   const Dataset set(*this, name);
@@ -261,9 +257,7 @@ Vector Hdf5Reader::leading_reals(const std::string& name, std::int64_t used, std
   return values;
 }
 
-std::pair<Index, Index> Hdf5Reader::extents(const std::string& name) const {
-  return extents(Dataset(*this, name));
-}
+std::pair<Index, Index> Hdf5Reader::extents(const std::string& name) const { return extents(Dataset(*this, name)); }
 
 std::pair<Index, Index> Hdf5Reader::extents(const Dataset& set) const {
   const int rank = H5Sget_simple_extent_ndims(set.space);

@@ -56,9 +56,7 @@ void Hdf5Writer::check(bool good, const std::string& what) const {
   if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path_, what));
 }
 
-void Hdf5Writer::group(const std::string& name) {
-  check(make_hdf5_group(file_, name.c_str()), name);
-}
+void Hdf5Writer::group(const std::string& name) { check(make_hdf5_group(file_, name.c_str()), name); }
 
 void Hdf5Writer::numbers(const std::string& name, bool real, const void* values, Index size) {
   const hid_t type = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT;
@@ -76,17 +74,13 @@ void Hdf5Writer::numbers(const std::string& name, bool real, const void* values,
   check(set >= 0 && (size == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0), name);
 }
 
-void Hdf5Writer::integer(const std::string& name, int value) {
-  numbers(name, false, &value, 1);
-}
+void Hdf5Writer::integer(const std::string& name, int value) { numbers(name, false, &value, 1); }
 
 void Hdf5Writer::integers(const std::string& name, const int* values, Index size) {
   numbers(name, false, values, size);
 }
 
-void Hdf5Writer::reals(const std::string& name, const double* values, Index size) {
-  numbers(name, true, values, size);
-}
+void Hdf5Writer::reals(const std::string& name, const double* values, Index size) { numbers(name, true, values, size); }
 
 void Hdf5Writer::text(const std::string& name, const std::string& value) {
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -30,9 +30,7 @@ constexpr std::uint32_t format = 12;
 constexpr std::size_t retained_checkpoints = 2;
 constexpr std::size_t head_size = magic.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
-std::uint32_t checksum(std::string_view text) {
-  return Checksum().add(text.data(), text.size()).value();
-}
+std::uint32_t checksum(std::string_view text) { return Checksum().add(text.data(), text.size()).value(); }
 
 template <class Number>
 void put(std::string& text, Number number) {

@@ -84,9 +84,7 @@ void throw_file_error(const std::string& path, const char* what, int error_numbe
   throw Error(ErrorKind::file_access, fmt::format("{}: cannot {}: {}", path, what, std::strerror(error_number)));
 }
 
-void sync_to_disk(const std::string& path) {
-  OpenFile(path, O_RDONLY).sync();
-}
+void sync_to_disk(const std::string& path) { OpenFile(path, O_RDONLY).sync(); }
 
 void write_durably(const std::string& path, const std::string& content) {
   require_parent_directory(path);

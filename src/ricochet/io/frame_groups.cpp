@@ -81,9 +81,7 @@ class FrameGroups : public FrameArrangement {
 
 }  // namespace
 
-std::string frame_group_name(long frame) {
-  return fmt::format("/frames/{:06d}", frame);
-}
+std::string frame_group_name(long frame) { return fmt::format("/frames/{:06d}", frame); }
 
 std::unique_ptr<const FrameArrangement> make_frame_groups(const std::vector<DatasetLayout>& layout,
                                                           const FrameFileOptions& options) {

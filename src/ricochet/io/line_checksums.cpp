@@ -27,9 +27,7 @@ constexpr const char* file_suffix = ".lines.file";
 
 }  // namespace
 
-LineChecksums::LineChecksums() {
-  blocks_.reserve(most_blocks);
-}
+LineChecksums::LineChecksums() { blocks_.reserve(most_blocks); }
 
 void LineChecksums::persist(const SnapshotVisitor& visit, std::string file_name) {
   const SnapshotVisitor lines = visit.part("lines");

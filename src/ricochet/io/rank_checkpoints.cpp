@@ -29,9 +29,7 @@ struct Manifest {
   std::vector<std::string> checksums;  ///< by rank; empty if unreadable
 };
 
-std::string folder_of(const std::string& directory) {
-  return (fs::path(directory) / "ranks").string();
-}
+std::string folder_of(const std::string& directory) { return (fs::path(directory) / "ranks").string(); }
 
 std::string folder_of_rank(const std::string& directory, int rank) {
   return (fs::path(folder_of(directory)) / fmt::format("{:04}", rank)).string();
@@ -159,9 +157,7 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
   return std::nullopt;
 }
 
-std::string checkpoint_folder_of_first_rank(const std::string& directory) {
-  return folder_of_rank(directory, 0);
-}
+std::string checkpoint_folder_of_first_rank(const std::string& directory) { return folder_of_rank(directory, 0); }
 
 std::optional<CheckpointFile> newest_manifest(const std::string& directory) {
   for (const Manifest& manifest : manifests(directory)) {
@@ -177,9 +173,7 @@ int ranks_of_checkpoints(const std::string& directory) {
   return 0;
 }
 
-bool has_rank_checkpoints(const std::string& directory) {
-  return !manifests(directory).empty();
-}
+bool has_rank_checkpoints(const std::string& directory) { return !manifests(directory).empty(); }
 
 std::string run_command(int processes) {
   return processes == 1 ? "ricochet run" : fmt::format("mpirun -n {} ricochet-mpi run", processes);

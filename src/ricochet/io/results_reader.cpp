@@ -102,17 +102,11 @@ ResultsReader::ResultsReader(const std::string& directory, int dimension, int de
 
 ResultsReader::~ResultsReader() = default;
 
-void ResultsReader::release() {
-  storage_->close();
-}
+void ResultsReader::release() { storage_->close(); }
 
-const std::vector<double>& ResultsReader::times() const {
-  return storage_->frames().times;
-}
+const std::vector<double>& ResultsReader::times() const { return storage_->frames().times; }
 
-const std::vector<ResultField>& ResultsReader::fields() const {
-  return storage_->frames().fields;
-}
+const std::vector<ResultField>& ResultsReader::fields() const { return storage_->frames().fields; }
 
 Index ResultsReader::cell_count() const {
   Index count = 0;
@@ -126,9 +120,7 @@ const ResultField* ResultsReader::find_field(const std::string& name) const {
   return found == fields().end() ? nullptr : &*found;
 }
 
-Index ResultsReader::rows_of(const ResultField& field) const {
-  return field.on_nodes ? nodes_.cols() : cell_count();
-}
+Index ResultsReader::rows_of(const ResultField& field) const { return field.on_nodes ? nodes_.cols() : cell_count(); }
 
 void ResultsReader::read(Index frame, const ResultField& field, std::vector<float>& values) const {
   storage_->read(frame, field, rows_of(field), &values);

@@ -25,9 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int open_directory(const std::string& path) {
-  return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-}
+int open_directory(const std::string& path) { return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
 
 }  // namespace
 
@@ -73,9 +71,7 @@ RunDirectory::~RunDirectory() {
   if (lock_ >= 0) close(lock_);
 }
 
-std::string RunDirectory::file(const std::string& name) const {
-  return (fs::path(path_) / name).string();
-}
+std::string RunDirectory::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
 
 std::vector<std::string> RunDirectory::results() const {
   std::vector<std::string> names = files_of_all_formats(), result;

@@ -87,9 +87,7 @@ double RunSummary::deepest_penetration() const {
   return deepest;
 }
 
-double RunSummary::work_scale() const {
-  return largest_size(*this, column_names_of(ColumnGroup::work));
-}
+double RunSummary::work_scale() const { return largest_size(*this, column_names_of(ColumnGroup::work)); }
 
 bool RunSummary::small_strain_holds_in(std::size_t impact) const {
   return rotation.holds_in_impact(impact) && !(impact < impacts.size() && is_distorted_by_rotation(impacts[impact]));
@@ -166,9 +164,7 @@ std::optional<RunSummary> find_intact_summary(const std::string& directory) {
   }
 }
 
-RunSummary read_summary(const std::string& path) {
-  return summary_from_json(read_file(path), path);
-}
+RunSummary read_summary(const std::string& path) { return summary_from_json(read_file(path), path); }
 
 RunSummary summary_from_json(const std::string& text, const std::string& path) {
   try {

@@ -36,9 +36,7 @@ void SummaryVisitor::explain(const char* name, const char* text) {
   if (task_ == Task::outline) json_["properties"][name]["description"] = text;
 }
 
-void SummaryVisitor::allow_null(Json& schema) {
-  allow(schema, "null");
-}
+void SummaryVisitor::allow_null(Json& schema) { allow(schema, "null"); }
 
 void SummaryVisitor::require_array(const Json& json) {
   if (!json.is_array()) throw Json::Exception("an array is expected, not " + json.dump());

@@ -107,9 +107,7 @@ std::vector<DatasetLayout> datasets_of(const std::vector<Field>& fields) {
   return result;
 }
 
-const char* xdmf_type(int components) {
-  return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6";
-}
+const char* xdmf_type(int components) { return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6"; }
 
 /// Writes results.h5 with results.xdmf, which includes obstacles.xdmf if there are obstacles.
 class XdmfOutput : public FrameOutput {

@@ -64,9 +64,7 @@ void DenseLu::solve(const Vector& right, Vector& x) const {
   if (size > 0) dgetrs_("N", &size, &single, factors_.data(), &size, permutation_.data(), x.data(), &size, &info);
 }
 
-double DenseLu::smallest_pivot() const {
-  return factors_.size() > 0 ? factors_.diagonal().cwiseAbs().minCoeff() : 1.0;
-}
+double DenseLu::smallest_pivot() const { return factors_.size() > 0 ? factors_.diagonal().cwiseAbs().minCoeff() : 1.0; }
 
 bool SingleLu::compute(const Matrix& matrix) {
   prepare_blas();

@@ -117,9 +117,7 @@ void NodeMatrix::add_block(Index block, double factor, Index stride, double* sum
   }
 }
 
-std::size_t NodeMatrix::bytes() const {
-  return sizeof(double) * values_.size() + pattern_.bytes();
-}
+std::size_t NodeMatrix::bytes() const { return sizeof(double) * values_.size() + pattern_.bytes(); }
 
 void NodeMatrix::multiply(const Vector& x, Vector& y) const {
   y.resize(size());

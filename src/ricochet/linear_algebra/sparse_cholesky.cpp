@@ -283,40 +283,24 @@ void SparseCholesky::refactorize(const SparseMatrix& matrix) {
   }
 }
 
-SparseCholesky::Prediction SparseCholesky::predicted() const {
-  return implementation_->prediction;
-}
+SparseCholesky::Prediction SparseCholesky::predicted() const { return implementation_->prediction; }
 
-Index SparseCholesky::size() const {
-  return Index(implementation_->permutation.size());
-}
-bool SparseCholesky::positive_definite() const {
-  return failed_unknown() < 0;
-}
+Index SparseCholesky::size() const { return Index(implementation_->permutation.size()); }
+bool SparseCholesky::positive_definite() const { return failed_unknown() < 0; }
 
-Index SparseCholesky::failed_unknown() const {
-  return implementation_->failed;
-}
+Index SparseCholesky::failed_unknown() const { return implementation_->failed; }
 
-double SparseCholesky::scale() const {
-  return implementation_->scale;
-}
-std::size_t SparseCholesky::factor_entries() const {
-  return implementation_->entries;
-}
+double SparseCholesky::scale() const { return implementation_->scale; }
+std::size_t SparseCholesky::factor_entries() const { return implementation_->entries; }
 std::size_t SparseCholesky::factor_bytes() const {
   const bool own = implementation_->arithmetic == Arithmetic::own;
   return own ? implementation_->supernodal.bytes() : implementation_->entries * sizeof(double);
 }
-const std::vector<int>& SparseCholesky::permutation() const {
-  return implementation_->permutation;
-}
+const std::vector<int>& SparseCholesky::permutation() const { return implementation_->permutation; }
 Index SparseCholesky::factor_index(Index unknown) const {
   return implementation_->factor_indices[std::size_t(unknown)];
 }
-const SupernodalFactor& SparseCholesky::supernodal() const {
-  return implementation_->supernodal;
-}
+const SupernodalFactor& SparseCholesky::supernodal() const { return implementation_->supernodal; }
 Index SparseCholesky::work_size() const {
   return implementation_->arithmetic == Arithmetic::own ? implementation_->supernodal.work_size() : size();
 }

@@ -22,12 +22,8 @@ bool SparseLu::compute(const SparseMatrix& matrix) {
   return own.factor.info() == Eigen::Success;
 }
 
-void SparseLu::reset() {
-  implementation_->analysed = false;
-}
+void SparseLu::reset() { implementation_->analysed = false; }
 
-void SparseLu::solve(const Vector& right, Vector& x) const {
-  x = implementation_->factor.solve(right);
-}
+void SparseLu::solve(const Vector& right, Vector& x) const { x = implementation_->factor.solve(right); }
 
 }  // namespace ricochet

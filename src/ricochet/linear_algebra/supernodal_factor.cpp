@@ -35,9 +35,7 @@ HugePageBuffer::HugePageBuffer(std::size_t size) : size_(size) {
 #endif
 }
 
-void HugePageBuffer::Release::operator()(double* values) const {
-  std::free(values);
-}
+void HugePageBuffer::Release::operator()(double* values) const { std::free(values); }
 
 SupernodalFactor::SupernodalFactor(const SupernodalStructure& shape) {
   read_shape(shape);

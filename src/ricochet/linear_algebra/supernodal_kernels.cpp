@@ -28,21 +28,15 @@ RICOCHET_PART_OF_CALLER void fetch_panel(const double* panel) {
   }
 }
 
-RICOCHET_PART_OF_CALLER double sum(const Pack<2>& a) {
-  return a[0] + a[1];
-}
-RICOCHET_PART_OF_CALLER double sum(const Pack<4>& a) {
-  return (a[0] + a[2]) + (a[1] + a[3]);
-}
+RICOCHET_PART_OF_CALLER double sum(const Pack<2>& a) { return a[0] + a[1]; }
+RICOCHET_PART_OF_CALLER double sum(const Pack<4>& a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 RICOCHET_PART_OF_CALLER double sum(const Pack<8>& a) {
   return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 
 /// Number of rows below a triangle, including the zeros that fill its last panels: remainders of 1 to 7 become 2, 2, 4,
 /// 4, 6, 6, 8.
-RICOCHET_PART_OF_CALLER constexpr Index filled(Index rows) {
-  return (rows + 1) / 2 * 2;
-}
+RICOCHET_PART_OF_CALLER constexpr Index filled(Index rows) { return (rows + 1) / 2 * 2; }
 template <int H, int C>
 RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const double (&x)[C], double* w) {
   Pack<H> product = load<H>(stream) * x[0];

@@ -15,9 +15,7 @@
 namespace ricochet {
 
 /// Stored numbers per column of the inverse of a triangle.
-[[nodiscard]] constexpr Index triangle_lanes(Index columns) {
-  return columns <= 2 ? 2 : columns <= 4 ? 4 : 8;
-}
+[[nodiscard]] constexpr Index triangle_lanes(Index columns) { return columns <= 2 ? 2 : columns <= 4 ? 4 : 8; }
 
 struct SupernodeLayout {
   Index head = 0;    ///< columns of the head; 0: there is none

@@ -44,13 +44,9 @@ bool WideSupernode::is_wide(Index columns, Index rows) {
   return columns >= 32 && SupernodeLayout(columns, rows).size() >= min_size;
 }
 
-Index WideSupernode::sums_size() {
-  return 8 * strip_columns * max_parts;
-}
+Index WideSupernode::sums_size() { return 8 * strip_columns * max_parts; }
 
-Index WideSupernode::strips() const {
-  return (layout_.blocks + strip_blocks - 1) / strip_blocks;
-}
+Index WideSupernode::strips() const { return (layout_.blocks + strip_blocks - 1) / strip_blocks; }
 
 WideSupernode::Strip WideSupernode::strip(Index number) const {
   const Index count = strips();

@@ -30,9 +30,7 @@ std::string name_of(const MassInput& input, const MassBody& body) {
 
 /// Factor of ξη in the list of second moments: with it the norm of the list is that of the symmetric
 /// matrix and independent of the axes.
-double factor_of(Index a, Index b) {
-  return a == b ? 1.0 : std::numbers::sqrt2;
-}
+double factor_of(Index a, Index b) { return a == b ? 1.0 : std::numbers::sqrt2; }
 
 /// Moments that the masses of one body must reproduce, in the frame of the body.
 struct Moments {

@@ -27,8 +27,6 @@ SparseMatrix build_lumped_mass(const MassInput& input, const Parameters&) {
 
 }  // namespace
 
-MassRegistration lumped_mass() {
-  return {"lumped", {.build = build_lumped_mass}};
-}
+MassRegistration lumped_mass() { return {"lumped", {.build = build_lumped_mass}}; }
 
 }  // namespace ricochet

@@ -55,9 +55,7 @@ using MassRegistration = Registration<MassType>;
 
 /// Registry of all masses. A program may add its own.
 [[nodiscard]] Registry<MassType>& mass_registry();
-[[nodiscard]] inline std::vector<std::string> mass_names() {
-  return mass_registry().names();
-}
+[[nodiscard]] inline std::vector<std::string> mass_names() { return mass_registry().names(); }
 /// Builds a mass by its name in case files, with the values of its keys; throws Error(invalid_input) that lists the
 /// names, and as MassType::build does.
 [[nodiscard]] SparseMatrix build_mass(const std::string& name, const MassInput& input, Parameters values = {});

@@ -68,9 +68,7 @@ Eigen::Vector3d direction(const Mesh& mesh, const Index* cell, const Edge& edge)
   return tangent / tangent.norm();
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
+double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// Solid angle between unit vectors (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125–126).
 double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {

@@ -49,9 +49,7 @@ Response run(const std::vector<std::string>& arguments, const fs::path& workspac
   return response;
 }
 
-[[noreturn]] void fail(const std::string& message) {
-  throw Error(ErrorKind::invalid_input, message);
-}
+[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::invalid_input, message); }
 
 /// Exit statuses of convert_mesh.py.
 constexpr int refused = 2, package_missing = 3;

@@ -67,12 +67,8 @@ std::vector<std::string> names_in_parts(const Mesh& mesh, const std::string& nam
 
 }  // namespace
 
-Index Mesh::cell_count() const {
-  return total_size(cells);
-}
-Index Mesh::facet_count() const {
-  return total_size(facets);
-}
+Index Mesh::cell_count() const { return total_size(cells); }
+Index Mesh::facet_count() const { return total_size(facets); }
 
 const Group* Mesh::find_group(const std::string& name, int dimension) const {
   for (const Group& group : groups) {

@@ -62,14 +62,10 @@ void append_companions(const fs::path& path, std::set<fs::path>& visited, std::s
   for (const fs::path& companion : companions(path, content)) append_companions(companion, visited, key);
 }
 
-bool is_script(const std::string& path) {
-  return extension_of(path) == ".geo";
-}
+bool is_script(const std::string& path) { return extension_of(path) == ".geo"; }
 
 /// Options file that gmsh reads along with a file.
-fs::path options_file(const fs::path& path) {
-  return path.string() + ".opt";
-}
+fs::path options_file(const fs::path& path) { return path.string() + ".opt"; }
 
 /// Appends the contents on which the mesh depends: the file, the options that Gmsh reads beside it, and every file that
 /// a .geo file names in quotes, such as those it merges. Names that a .geo file computes and effects of its SystemCall
@@ -209,9 +205,7 @@ fs::path converted_file(const std::string& path) {
 
 namespace ricochet {
 
-bool needs_gmsh_program(const std::string& path) {
-  return gmsh::is_cad_file(path) || gmsh::is_script(path);
-}
+bool needs_gmsh_program(const std::string& path) { return gmsh::is_cad_file(path) || gmsh::is_script(path); }
 
 bool may_run_commands(const std::string& path) {
   std::error_code ignored;

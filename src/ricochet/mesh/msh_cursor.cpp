@@ -11,9 +11,7 @@ namespace ricochet::gmsh {
 
 namespace {
 
-bool is_space(char c) {
-  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
-}
+bool is_space(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
 /// Returns a token in printable form for messages.
 std::string printable(std::string_view token) {

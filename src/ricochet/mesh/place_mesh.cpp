@@ -31,9 +31,7 @@ CosineAndSine of_degrees(double degrees) {
   }
 }
 
-Eigen::Map<const Vector> vector_of(const std::vector<double>& values) {
-  return {values.data(), Index(values.size())};
-}
+Eigen::Map<const Vector> vector_of(const std::vector<double>& values) { return {values.data(), Index(values.size())}; }
 
 Matrix rotation_matrix(const MeshRotation& rotation, int dimension) {
   const auto [cosine, sine] = of_degrees(rotation.angle);

@@ -176,8 +176,6 @@ class Reader {
 
 }  // namespace
 
-RawMesh read_msh(std::string_view content, const std::string& source) {
-  return Reader(content, source).read();
-}
+RawMesh read_msh(std::string_view content, const std::string& source) { return Reader(content, source).read(); }
 
 }  // namespace ricochet::gmsh

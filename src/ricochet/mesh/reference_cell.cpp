@@ -131,18 +131,14 @@ const VertexSets& node_vertices(CellShape shape, int degree) {
   return table.at(shape, degree);
 }
 
-int node_count(CellShape shape, int degree) {
-  return int(node_vertices(shape, degree).size());
-}
+int node_count(CellShape shape, int degree) { return int(node_vertices(shape, degree).size()); }
 
 int node_at_mean(CellShape shape, std::vector<int> vertices) {
   std::ranges::sort(vertices);
   return index_of(node_vertices(shape, 2), vertices);
 }
 
-int degree_of(CellShape shape, int nodes) {
-  return nodes == vertex_count(shape) ? 1 : 2;
-}
+int degree_of(CellShape shape, int nodes) { return nodes == vertex_count(shape) ? 1 : 2; }
 
 CellShape facet_shape(CellShape shape, std::size_t facet) {
   const auto fits = [&](CellShape each) {

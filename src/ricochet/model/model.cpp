@@ -341,9 +341,7 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
 
 }  // namespace
 
-std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
-  return build(input, true, times);
-}
+std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) { return build(input, true, times); }
 
 std::unique_ptr<Model> build_model_without_forces(const Case& input, BuildTimes* times) {
   return build(input, false, times);

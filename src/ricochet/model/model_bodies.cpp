@@ -21,9 +21,7 @@ namespace {
 /// facets: facets that meet at an angle of more than 50 degrees.
 constexpr double sharp_edge = 0.9;
 
-std::string position_text(const Vector& point) {
-  return fmt::format("({:.6g})", fmt::join(point, ", "));
-}
+std::string position_text(const Vector& point) { return fmt::format("({:.6g})", fmt::join(point, ", ")); }
 
 std::string names_of_pair(const ContactPair& pair) {
   return fmt::format("contact groups \"{}\" and \"{}\"", pair.group, pair.opposite_group);

@@ -47,9 +47,7 @@ void complete_groups(const Case& input, Mesh& mesh);
 [[nodiscard]] const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh,
                                     const std::string& name, int dimension);
 
-[[nodiscard]] inline bool is_axisymmetric(const Case& input) {
-  return input.mesh.plane == "axisymmetric";
-}
+[[nodiscard]] inline bool is_axisymmetric(const Case& input) { return input.mesh.plane == "axisymmetric"; }
 /// Refuses what axisymmetric bodies do not support: translations and gravity across the axis, and spins.
 void check_axisymmetry(const Case& input, int dimension);
 /// Makes the same checks for an obstacle that moves.

@@ -77,9 +77,7 @@ void FiniteElasticity::strain_force(const Vector& displacement, const Vector& in
   condense(force);
 }
 
-SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const {
-  return step_tangent(displacement, 0.0);
-}
+SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const { return step_tangent(displacement, 0.0); }
 
 SparseMatrix FiniteElasticity::step_tangent(const Vector& displacement, double step) const {
   SparseMatrix result = cells_.tangent(complete(displacement, displacement_), step);

@@ -24,21 +24,13 @@ void InternalForce::mean_forces(const Vector& middle, const Vector& increment, V
   strain_force(middle, increment, of_strain);
 }
 
-std::shared_ptr<const InternalForce> InternalForce::restricted_to(const std::vector<char>&) const {
-  throw_linear();
-}
+std::shared_ptr<const InternalForce> InternalForce::restricted_to(const std::vector<char>&) const { throw_linear(); }
 
-void InternalForce::mean_force(const Vector&, const Vector&, Vector&) const {
-  throw_linear();
-}
+void InternalForce::mean_force(const Vector&, const Vector&, Vector&) const { throw_linear(); }
 
-double InternalForce::energy(const Vector& displacement, const Vector&) const {
-  return energy(displacement);
-}
+double InternalForce::energy(const Vector& displacement, const Vector&) const { return energy(displacement); }
 
-double InternalForce::energy_terms(const Vector&) const {
-  throw_linear();
-}
+double InternalForce::energy_terms(const Vector&) const { throw_linear(); }
 
 Vector InternalForce::stiffness_diagonal() const {
   const NodeMatrix* const constant = constant_tangent();

@@ -10,9 +10,7 @@ void Loads::add_separable(Vector pattern, Expression amplitude) {
   separable_.push_back({std::move(pattern), std::move(amplitude)});
 }
 
-void Loads::add_general(std::function<void(double, Vector&)> add) {
-  general_.push_back(std::move(add));
-}
+void Loads::add_general(std::function<void(double, Vector&)> add) { general_.push_back(std::move(add)); }
 
 void Loads::varying(double time, Vector& load) const {
   load.setZero(constant_.size());
@@ -49,13 +47,9 @@ void Supports::finish() {
   expression_ = std::move(expression);
 }
 
-bool Supports::contains(Index dof) const {
-  return expression_of_dof_.contains(dof);
-}
+bool Supports::contains(Index dof) const { return expression_of_dof_.contains(dof); }
 
-const Expression& Supports::expression(Index dof) const {
-  return expressions_[expression_of_dof_.at(dof)];
-}
+const Expression& Supports::expression(Index dof) const { return expressions_[expression_of_dof_.at(dof)]; }
 
 void Supports::values(double time, Vector& values) const {
   values.resize(size());

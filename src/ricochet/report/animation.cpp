@@ -21,20 +21,12 @@ constexpr Index drawn_triangles = 20'000;
 constexpr double drawn_in_all = 1e6;
 constexpr std::size_t drawn_frames = 200;
 
-[[noreturn]] void refuse_animation(const std::string& message) {
-  throw Error(ErrorKind::usage, message);
-}
+[[noreturn]] void refuse_animation(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
-std::string number_text(int value) {
-  return std::to_string(value);
-}
+std::string number_text(int value) { return std::to_string(value); }
 /// Returns a number with nine digits, which suffice for pictures; "null" if it is not finite.
-std::string number_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
-}
-std::string number_text(float value) {
-  return number_text(double(value));
-}
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
+std::string number_text(float value) { return number_text(double(value)); }
 
 template <class Values>
 std::string list_text(const Values& values) {

@@ -16,9 +16,7 @@ constexpr double most_numbers = 2.5e8;
 constexpr std::array contact_names{"contact_pressure", "friction_traction",        "gap",
                                    "contact_status",   "nominal_contact_pressure", "nominal_friction_traction"};
 
-bool is_contact(const std::string& name) {
-  return std::ranges::find(contact_names, name) != contact_names.end();
-}
+bool is_contact(const std::string& name) { return std::ranges::find(contact_names, name) != contact_names.end(); }
 
 /// Excludes tensors, which a page does not show, and contact fields, which have a part of their own.
 bool is_shown(const ResultField& field) {

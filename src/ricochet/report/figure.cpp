@@ -45,9 +45,7 @@ struct Quantity {
   bool from_zero = false;
 };
 
-[[noreturn]] void refuse(const std::string& message) {
-  throw Error(ErrorKind::usage, message);
-}
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
 double spread(const std::vector<double>& values) {
   if (values.empty()) return 0.0;

@@ -100,9 +100,7 @@ int better_prediction(const std::vector<std::uint16_t>& levels, Index rows, Inde
 
 }  // namespace
 
-std::size_t base64_size(std::size_t bytes) {
-  return (bytes + 2) / 3 * 4;
-}
+std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
 void append_base64(std::string_view bytes, std::string& text) {
   static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -59,13 +59,9 @@ Json to_json(const ObstaclePart& part) {
 }
 
 /// Numbers that are not finite become words, as null stands for values that do not exist.
-Json to_json(double value) {
-  return Json::number(value);
-}
+Json to_json(double value) { return Json::number(value); }
 
-Json to_json(const std::optional<double>& value) {
-  return value ? to_json(*value) : Json(nullptr);
-}
+Json to_json(const std::optional<double>& value) { return value ? to_json(*value) : Json(nullptr); }
 
 Json to_json(const Judgement& j) {
   return {{"energy_broken_at", to_json(j.energy_broken_at)},

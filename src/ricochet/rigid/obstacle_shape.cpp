@@ -27,9 +27,7 @@ std::unique_ptr<ObstacleShape> make_obstacle_shape(const std::string& type, Para
 namespace {
 
 /// Returns whether two unit vectors are within 60° of each other.
-bool agree(const SpaceVector& a, const SpaceVector& b) {
-  return a.dot(b) > 0.5;
-}
+bool agree(const SpaceVector& a, const SpaceVector& b) { return a.dot(b) > 0.5; }
 
 /// Returns the normal of a step so long that its midpoint is not representative: the normal at the end, unless a force
 /// along it would create energy; then the direction perpendicular to `relative_step` that is nearest to it.
@@ -109,8 +107,6 @@ Key obstacle_side_key(const std::string& doc) {
   return choice_key("side", {"outside", "inside"}, {.default_value = "outside"}, doc);
 }
 
-double obstacle_side(const Parameters& parameters) {
-  return parameters.text("side") == "inside" ? -1.0 : 1.0;
-}
+double obstacle_side(const Parameters& parameters) { return parameters.text("side") == "inside" ? -1.0 : 1.0; }
 
 }  // namespace ricochet

@@ -123,8 +123,6 @@ void require_space(const Parameters& parameters, const std::string& key, const s
 [[nodiscard]] SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& relative_step, double change,
                                            double rounding, const SpaceVector& at_start, const SpaceVector& at_end);
 /// Eight rounding units of a number of this size.
-[[nodiscard]] inline double eight_roundings(double size) {
-  return 8.0 * std::numeric_limits<double>::epsilon() * size;
-}
+[[nodiscard]] inline double eight_roundings(double size) { return 8.0 * std::numeric_limits<double>::epsilon() * size; }
 
 }  // namespace ricochet

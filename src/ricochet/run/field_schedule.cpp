@@ -67,9 +67,7 @@ void FieldSchedule::persist(const SnapshotVisitor& visit) {
 }
 
 /// Returns the number of whole intervals up to this time; one that a step completes up to rounding counts.
-double FieldSchedule::intervals(double time) const {
-  return std::floor(time / interval_ * (1.0 + 1e-12));
-}
+double FieldSchedule::intervals(double time) const { return std::floor(time / interval_ * (1.0 + 1e-12)); }
 
 bool FieldSchedule::includes(const State& state) {
   bool result = every_ > 0 && state.step % every_ == 0;

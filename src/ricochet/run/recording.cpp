@@ -67,9 +67,7 @@ PenetrationWatch make_penetration_watch(const Case& input, const Model& model, s
           obstacles,  model.bodies,  step_work(model.sizes.dofs, factor_entries) + of_cells};
 }
 
-std::string sampled_name(long every) {
-  return fmt::format("probes-{}", every);
-}
+std::string sampled_name(long every) { return fmt::format("probes-{}", every); }
 
 }  // namespace
 

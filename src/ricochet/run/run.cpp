@@ -276,9 +276,7 @@ void Run::begin_simulation() {
   }
 }
 
-void Run::enter_impulse(const Vector& impulse) {
-  recording_->enter_impulse(session_.state(), impulse);
-}
+void Run::enter_impulse(const Vector& impulse) { recording_->enter_impulse(session_.state(), impulse); }
 
 void Run::write_checkpoint_now() {
   if (is_already_complete_ || has_ended_) return;

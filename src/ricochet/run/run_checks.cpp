@@ -141,8 +141,6 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
   log::warning(message);
 }
 
-std::vector<CheckResult> RunChecks::results() const {
-  return {energy_.result, linear_.result, angular_.result};
-}
+std::vector<CheckResult> RunChecks::results() const { return {energy_.result, linear_.result, angular_.result}; }
 
 }  // namespace ricochet

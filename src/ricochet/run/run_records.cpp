@@ -202,9 +202,7 @@ void Run::describe_progress(RunSummary& summary) {
   summary.warnings = session_.warnings();
 }
 
-Traffic Run::traffic() const {
-  return session_.model().problem.ranks->traffic() += ranks_.traffic();
-}
+Traffic Run::traffic() const { return session_.model().problem.ranks->traffic() += ranks_.traffic(); }
 
 void Run::describe_processes(RunSummary& summary) const {
   const Traffic now = traffic();

@@ -14,9 +14,7 @@ namespace ricochet {
 
 namespace {
 
-void refuse_use(const std::string& why) {
-  throw Error(ErrorKind::usage, "session: " + why);
-}
+void refuse_use(const std::string& why) { throw Error(ErrorKind::usage, "session: " + why); }
 
 /// Returns the options of the solver, with the preconditioners of the model.
 StepSolverOptions solver_options(const Case& input, const Model& model) {
@@ -106,9 +104,7 @@ bool Session::is_steered() const {
          std::ranges::any_of(input_.obstacles, [](const ObstacleSection& obstacle) { return obstacle.is_steered; });
 }
 
-bool Session::is_complete_already() const {
-  return run_ != nullptr && run_->is_complete_already();
-}
+bool Session::is_complete_already() const { return run_ != nullptr && run_->is_complete_already(); }
 
 Simulation& Session::simulation() {
   if (is_complete_already()) refuse_use("the run is complete: there is no state to access");

@@ -146,9 +146,7 @@ using SchemeRegistration = Registration<SchemeConstructor>;
 
 /// Registry of all schemes. Programs may add their own.
 [[nodiscard]] Registry<SchemeConstructor>& scheme_registry();
-[[nodiscard]] inline std::vector<std::string> scheme_names() {
-  return scheme_registry().names();
-}
+[[nodiscard]] inline std::vector<std::string> scheme_names() { return scheme_registry().names(); }
 /// Makes a scheme by name, with the values of its keys: make_scheme("newmark", 1e-4, {{"beta", 0.25}, {"gamma", 0.5}}).
 /// Throws Error(invalid_input), which lists the names or the missing or unknown parameter.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, double step, Parameters parameters = {});

@@ -147,9 +147,7 @@ double Simulation::contact_seconds() const {
   return sum;
 }
 
-Stage& Simulation::stage(std::size_t number) {
-  return current_->stages.at(number).stage;
-}
+Stage& Simulation::stage(std::size_t number) { return current_->stages.at(number).stage; }
 
 const StageSolution& Simulation::solve(std::size_t number) {
   auto& [stage, solution, dofs] = current_->stages.at(number);

@@ -69,9 +69,7 @@ double StepControl::energy_of_change() {
   return problem_.ranks->sum(sum);
 }
 
-double StepControl::step_of(int level) const {
-  return std::ldexp(options_.largest, -level);
-}
+double StepControl::step_of(int level) const { return std::ldexp(options_.largest, -level); }
 
 void StepControl::start(const State& state) {
   ticks_ = 0;

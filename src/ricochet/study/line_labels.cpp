@@ -15,9 +15,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::string last_part(const std::string& key) {
-  return key.substr(key.rfind('.') + 1);
-}
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 /// Returns the shortest label of an axis value that distinguishes it from the others: the first key alone, if that
 /// suffices.

@@ -23,9 +23,7 @@ th, .number { white-space: nowrap; }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 )";
 
-std::string comment_of(const std::string& mark) {
-  return fmt::format("<!-- {} -->", mark);
-}
+std::string comment_of(const std::string& mark) { return fmt::format("<!-- {} -->", mark); }
 
 }  // namespace
 
@@ -37,9 +35,7 @@ std::string page_begin(const std::string& mark, const std::string& title) {
       comment_of(mark), escaped(title), page_style, escaped(title));
 }
 
-std::string page_end() {
-  return fmt::format("<p>Ricochet {}</p>\n</body>\n</html>\n", version);
-}
+std::string page_end() { return fmt::format("<p>Ricochet {}</p>\n</body>\n</html>\n", version); }
 
 bool is_page_with(const std::string& mark, const std::string& path) {
   std::ifstream file(path, std::ios::binary);

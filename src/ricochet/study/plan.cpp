@@ -169,13 +169,9 @@ std::vector<PlannedRun> runs_of(const StudyPlan& plan) {
   return runs;
 }
 
-bool counts_halvings(const std::string& key) {
-  return key.ends_with(".refine");
-}
+bool counts_halvings(const std::string& key) { return key.ends_with(".refine"); }
 
-double step_of(const std::string& key, double value) {
-  return counts_halvings(key) ? std::exp2(-value) : value;
-}
+double step_of(const std::string& key, double value) { return counts_halvings(key) ? std::exp2(-value) : value; }
 
 KeyPosition find_varied(const StudyPlan& plan, const std::string& key, const std::string& option) {
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {

@@ -16,9 +16,7 @@ namespace ricochet {
 namespace {
 
 /// Returns true unless a warning concerns the case only, not its results.
-bool concerns_validity(const std::string& warning) {
-  return !warning.starts_with(end_warning);
-}
+bool concerns_validity(const std::string& warning) { return !warning.starts_with(end_warning); }
 
 /// Returns a coordinate of the position of the largest stress, for each of the dimensions.
 TableCell peak_coordinate(const RunSummary& s, std::size_t k) {

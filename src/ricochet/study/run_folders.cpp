@@ -45,9 +45,7 @@ void require_folder(const fs::path& path) {
 
 }  // namespace
 
-std::string PlanDirectory::path(const std::string& file) const {
-  return (fs::path(directory) / file).string();
-}
+std::string PlanDirectory::path(const std::string& file) const { return (fs::path(directory) / file).string(); }
 
 bool holds_plan(const std::string& directory, const std::string& file) {
   std::error_code ignored;

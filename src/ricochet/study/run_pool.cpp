@@ -77,9 +77,7 @@ StudyProgress::~StudyProgress() {
   if (open_) std::fputc('\n', stderr);
 }
 
-void StudyProgress::begin(const std::string& directory) {
-  running_.push_back(directory);
-}
+void StudyProgress::begin(const std::string& directory) { running_.push_back(directory); }
 
 void StudyProgress::end(const std::string& directory, const std::string& words) {
   std::erase(running_, directory);

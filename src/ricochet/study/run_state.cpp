@@ -24,9 +24,7 @@ std::string exit_status_path(const std::string& directory) {
   return (std::filesystem::path(directory) / exit_status_file).string();
 }
 
-bool is_done(const RunState& state) {
-  return state.summary && state.summary->status == "done";
-}
+bool is_done(const RunState& state) { return state.summary && state.summary->status == "done"; }
 
 /// Returns a checksum that distinguishes summaries; if there is none, the checksum of an empty text.
 std::string summary_checksum(const std::string& directory) {
@@ -36,9 +34,7 @@ std::string summary_checksum(const std::string& directory) {
   return Checksum().add_bytes(text.data(), text.size()).text();
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
 

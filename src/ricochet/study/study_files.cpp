@@ -68,9 +68,7 @@ std::set<std::string> meaning_of(const Texts& settings) {
   return meaning;
 }
 
-std::string numbered(std::size_t number, const std::string& name) {
-  return fmt::format("{:03}-{}", number, name);
-}
+std::string numbered(std::size_t number, const std::string& name) { return fmt::format("{:03}-{}", number, name); }
 
 /// Returns the key for "last", "finest" or an order if none is given.
 std::string only_numeric_key(const StudyPlan& plan, const std::string& option, bool must_be_one) {

@@ -32,9 +32,7 @@ struct Study : PlanDirectory {
   std::vector<StudyRun> runs;  ///< in the order of the table
 };
 
-[[nodiscard]] inline bool holds_study(const std::string& directory) {
-  return holds_plan(directory, "study.json");
-}
+[[nodiscard]] inline bool holds_study(const std::string& directory) { return holds_plan(directory, "study.json"); }
 /// Throws Error(file_access) if there is no study, Error(invalid_input) if it is damaged.
 [[nodiscard]] Study read_study(const std::string& directory);
 void write_study(const Study& study);

@@ -51,8 +51,6 @@ std::string make_study_page(const Study& study, const StudyResults& results, con
   return page + page_end();
 }
 
-bool is_study_page(const std::string& path) {
-  return is_page_with(page_mark, path);
-}
+bool is_study_page(const std::string& path) { return is_page_with(page_mark, path); }
 
 }  // namespace ricochet

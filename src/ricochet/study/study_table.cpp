@@ -308,15 +308,11 @@ StudyResults StudyTableMaker::make() {
   return std::move(results_);
 }
 
-std::string markdown_item(const std::string& text) {
-  return fmt::format("- {}\n", markdown_text(text));
-}
+std::string markdown_item(const std::string& text) { return fmt::format("- {}\n", markdown_text(text)); }
 
 }  // namespace
 
-StudyResults make_study_table(const Study& study) {
-  return StudyTableMaker(study).make();
-}
+StudyResults make_study_table(const Study& study) { return StudyTableMaker(study).make(); }
 
 void write_study_table(const Study& study, const StudyResults& results) {
   write_durably(study.path("study.csv"), to_csv(results.table));

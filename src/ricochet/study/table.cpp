@@ -172,17 +172,11 @@ std::string joined(const ResultTable& table, std::string (*write)(const ReadersT
 
 }  // namespace
 
-std::string to_markdown(const ResultTable& table) {
-  return joined(table, part_to_markdown);
-}
+std::string to_markdown(const ResultTable& table) { return joined(table, part_to_markdown); }
 
-std::string to_html(const ResultTable& table) {
-  return joined(table, part_to_html);
-}
+std::string to_html(const ResultTable& table) { return joined(table, part_to_html); }
 
-std::string to_aligned_text(const ResultTable& table) {
-  return joined(table, part_to_aligned_text);
-}
+std::string to_aligned_text(const ResultTable& table) { return joined(table, part_to_aligned_text); }
 
 std::string markdown_text(const std::string& text) {
   std::string result;

@@ -12,9 +12,7 @@ struct Thing {
   std::optional<Vector> values;
 };
 
-void persist(Archive& archive, Thing& thing) {
-  archive.all(thing.name, thing.pairs, thing.values);
-}
+void persist(Archive& archive, Thing& thing) { archive.all(thing.name, thing.pairs, thing.values); }
 
 TEST(Archive, GivesBackWhatItWasGiven) {
   std::vector<Thing> things{{"", {}, {}}, {"a \"b\"\n", {{3, -0.0}, {-7, 1e-308}}, Vector::Random(5)}};

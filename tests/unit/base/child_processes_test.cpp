@@ -76,9 +76,7 @@ TEST(RunChildren, TellsOfAProgramThatIsNotThere) {
   EXPECT_TRUE(is_absent);
 }
 
-TEST(UsableCores, AreAtLeastOne) {
-  EXPECT_GE(usable_cores(), 1u);
-}
+TEST(UsableCores, AreAtLeastOne) { EXPECT_GE(usable_cores(), 1u); }
 
 }  // namespace
 }  // namespace ricochet

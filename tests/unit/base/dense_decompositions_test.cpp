@@ -8,9 +8,7 @@
 namespace ricochet {
 namespace {
 
-double largest(const Matrix& matrix) {
-  return matrix.cwiseAbs().maxCoeff();
-}
+double largest(const Matrix& matrix) { return matrix.cwiseAbs().maxCoeff(); }
 
 const Matrix spd = (Matrix(3, 3) << 4.0, 1.0, 0.5, 1.0, 3.0, -0.2, 0.5, -0.2, 2.0).finished();
 const Matrix right = (Matrix(3, 2) << 1.0, 0.0, -2.0, 1.0, 0.5, 3.0).finished();

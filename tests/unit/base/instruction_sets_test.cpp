@@ -18,9 +18,7 @@ TEST(InstructionSets, TheOneThatRunsIsWhatTheEnvironmentSaysOrTheBest) {
 
 #if defined(__x86_64__) && defined(__GNUC__)
 /// (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰, whose last term is lost if the product is rounded separately.
-RICOCHET_EACH_INSTRUCTION_SET(double, last_term, (double value), (value)) {
-  return value * value - (1.0 + 0x1p-29);
-}
+RICOCHET_EACH_INSTRUCTION_SET(double, last_term, (double value), (value)) { return value * value - (1.0 + 0x1p-29); }
 /// Returns (1 + 2⁻³⁰)² − (1 + 2⁻²⁹) with AVX2 and FMA, whichever instruction set is selected.
 __attribute__((target("arch=x86-64-v3"), noinline)) double last_term_with_avx2(double value) {
   return value * value - (1.0 + 0x1p-29);

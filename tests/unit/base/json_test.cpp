@@ -74,9 +74,7 @@ TEST(JsonDocument, RefusesWhatDoesNot) {
 }
 
 /// Paths of files may contain any bytes.
-TEST(JsonDocument, WritesTextsThatAreNoUtf8) {
-  EXPECT_EQ(Json(std::string("a\xff")).dump(), "\"a\xef\xbf\xbd\"");
-}
+TEST(JsonDocument, WritesTextsThatAreNoUtf8) { EXPECT_EQ(Json(std::string("a\xff")).dump(), "\"a\xef\xbf\xbd\""); }
 
 }  // namespace
 }  // namespace ricochet

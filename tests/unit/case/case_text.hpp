@@ -77,9 +77,7 @@ inline std::string problems_of(const std::string& document, const std::vector<st
 }
 
 /// The list of schemes and of the keys of [time], as in messages.
-inline std::string all_schemes() {
-  return join_names(scheme_names(), " or ");
-}
+inline std::string all_schemes() { return join_names(scheme_names(), " or "); }
 inline std::string keys_of_time() {
   for (const Section& section : case_sections()) {
     if (section.name == "time") return join_names(names_of(section.keys));

@@ -12,9 +12,7 @@ const std::string rest_of_case =
     "end = 1.0\n";
 const std::string two_parts = "[part.wall]\nfile = \"w.msh\"\n[part.ball]\nfile = \"b.step\"\n" + rest_of_case;
 
-std::string expected_path(const std::string& name) {
-  return (std::filesystem::temp_directory_path() / name).string();
-}
+std::string expected_path(const std::string& name) { return (std::filesystem::temp_directory_path() / name).string(); }
 
 }  // namespace
 

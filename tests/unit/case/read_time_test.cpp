@@ -8,9 +8,7 @@ namespace ricochet::case_test {
 
 namespace {
 
-std::string with_scheme(const std::string& keys) {
-  return edited_case(9, keys);
-}
+std::string with_scheme(const std::string& keys) { return edited_case(9, keys); }
 
 const std::string newmark = "scheme = \"newmark\"\n";
 const std::string preset_file = with_scheme(newmark + "preset = \"textbook-half\"");
@@ -78,9 +76,7 @@ TEST(ReadTime, WarnsOfInstability) {
   EXPECT_TRUE(has(warnings_of("beta = 0.1\ngamma = 0.5")[0], "only conditionally stable"));
 }
 
-TEST(ReadTime, OneStepIsEnough) {
-  EXPECT_EQ(read_text(edited_case(10, "step = 1.0")).time.step, 1.0);
-}
+TEST(ReadTime, OneStepIsEnough) { EXPECT_EQ(read_text(edited_case(10, "step = 1.0")).time.step, 1.0); }
 
 TEST(ReadTime, RefusesStepsThatNumbersDoNotReach) {
   const std::string square =

@@ -11,9 +11,7 @@
 namespace ricochet::test_support {
 namespace {
 
-void expect_equal(const FclibProblem& a, const FclibProblem& b) {
-  EXPECT_TRUE(same(a, b));
-}
+void expect_equal(const FclibProblem& a, const FclibProblem& b) { EXPECT_TRUE(same(a, b)); }
 
 // Round trips.
 

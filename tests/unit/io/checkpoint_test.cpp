@@ -44,9 +44,7 @@ std::string refusal(const std::string& text) {
   return message_of([&] { static_cast<void>(decode_snapshot(text)); });
 }
 
-std::string folder_of_test() {
-  return std::filesystem::path(write_temporary("x", "")).parent_path().string();
-}
+std::string folder_of_test() { return std::filesystem::path(write_temporary("x", "")).parent_path().string(); }
 
 Snapshot of_step(std::int64_t step, const std::string& written_by = version) {
   Snapshot snapshot;

@@ -14,9 +14,7 @@
 namespace ricochet::test_support {
 namespace {
 
-std::string line(int number) {
-  return fmt::format("{},{:.17g}\n", number, 1.0 / (number + 1));
-}
+std::string line(int number) { return fmt::format("{},{:.17g}\n", number, 1.0 / (number + 1)); }
 
 class LineChecksumsTest : public testing::Test {
  protected:

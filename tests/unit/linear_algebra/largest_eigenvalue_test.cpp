@@ -78,9 +78,7 @@ TEST(LargestEigenvalue, IsFollowedFromAGuess) {
   EXPECT_NEAR(improve(one, 0.0), 10.3e-12, 1e-24);
 }
 
-TEST(LargestEigenvalue, OfNothingIsZero) {
-  EXPECT_EQ(bounds_of(Vector::Zero(10)).upper, 0.0);
-}
+TEST(LargestEigenvalue, OfNothingIsZero) { EXPECT_EQ(bounds_of(Vector::Zero(10)).upper, 0.0); }
 
 }  // namespace
 }  // namespace ricochet

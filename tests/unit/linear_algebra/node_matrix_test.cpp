@@ -22,9 +22,7 @@ std::unique_ptr<MeshedBody> body_of(int d) {
                           1);
 }
 
-SparseMatrix stiffness_of(const MeshedBody& test) {
-  return assemble_stiffness(test.body, node_graph(test.space));
-}
+SparseMatrix stiffness_of(const MeshedBody& test) { return assemble_stiffness(test.body, node_graph(test.space)); }
 SparseMatrix mass_of(const MeshedBody& test) {
   return expand_to_components(assemble_scalar_mass(test.body, node_graph(test.space)), test.space.dimension);
 }

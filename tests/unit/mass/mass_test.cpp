@@ -9,18 +9,14 @@
 namespace ricochet {
 namespace {
 
-SparseMatrix sparse(const Matrix& dense) {
-  return dense.sparseView();
-}
+SparseMatrix sparse(const Matrix& dense) { return dense.sparseView(); }
 
 Points points(Index dimension, std::initializer_list<double> values) {
   return Eigen::Map<const Points>(values.begin(), dimension, Index(values.size()) / dimension);
 }
 
 /// Consistent mass matrix of a bar of length 1 and mass 1: ⅓ and ⅙.
-Matrix bar() {
-  return (Matrix(2, 2) << 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0).finished();
-}
+Matrix bar() { return (Matrix(2, 2) << 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0).finished(); }
 
 TEST(LumpedMass, IsTheSumOfEachRow) {
   EXPECT_LE((lumped_diagonal(sparse(bar())) - Vector::Constant(2, 0.5)).cwiseAbs().maxCoeff(), 1e-16);

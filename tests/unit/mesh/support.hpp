@@ -19,13 +19,9 @@
 /// @file Helpers for the tests of meshes.
 namespace ricochet::test_support {
 
-inline std::string mesh_path(const std::string& name) {
-  return data_path("meshes/" + name);
-}
+inline std::string mesh_path(const std::string& name) { return data_path("meshes/" + name); }
 
-inline std::string mesh_content(const std::string& name) {
-  return gmsh::read_whole_file(mesh_path(name));
-}
+inline std::string mesh_content(const std::string& name) { return gmsh::read_whole_file(mesh_path(name)); }
 
 inline MeshFile mesh_file(const std::string& path) {
   MeshFile file;
@@ -33,9 +29,7 @@ inline MeshFile mesh_file(const std::string& path) {
   return file;
 }
 
-inline Mesh read_test_mesh(const std::string& name) {
-  return read_mesh(mesh_file(mesh_path(name)));
-}
+inline Mesh read_test_mesh(const std::string& name) { return read_mesh(mesh_file(mesh_path(name))); }
 
 /// Reads a mesh as read_mesh does, but from a string.
 inline Mesh mesh_of(const std::string& content, double scale = 1.0, bool bodies_may_touch = false) {

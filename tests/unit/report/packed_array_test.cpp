@@ -21,9 +21,7 @@ std::string inflated(const std::string& blob, std::size_t size) {
   return bytes;
 }
 
-unsigned byte(const std::string& bytes, std::size_t at) {
-  return static_cast<unsigned char>(bytes.at(at));
-}
+unsigned byte(const std::string& bytes, std::size_t at) { return static_cast<unsigned char>(bytes.at(at)); }
 
 /// Decodes the levels as the viewer does, from the description of the format.
 std::vector<unsigned> decoded(const PackedArray& array, const std::string& bytes) {

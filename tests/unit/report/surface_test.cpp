@@ -21,9 +21,7 @@ Points in_space(const Points& nodes) {
 }
 
 /// Index in `surface.nodes` of corner k of a triangle.
-int corner_of(const Simplices& surface, Index t, int k) {
-  return surface.corners[std::size_t(3 * t + k)];
-}
+int corner_of(const Simplices& surface, Index t, int k) { return surface.corners[std::size_t(3 * t + k)]; }
 
 double area(const Points& nodes, const Simplices& surface, Index t) {
   const auto corner = [&](int k) {

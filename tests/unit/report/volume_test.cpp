@@ -14,9 +14,7 @@ namespace ricochet::test_support {
 namespace {
 
 /// Index in `volume.nodes` of corner k of a tetrahedron.
-int vertex_of(const Simplices& volume, Index t, int k) {
-  return volume.corners[std::size_t(4 * t + k)];
-}
+int vertex_of(const Simplices& volume, Index t, int k) { return volume.corners[std::size_t(4 * t + k)]; }
 
 double volume_of(const Points& nodes, const Simplices& volume, Index t) {
   const auto corner = [&](int k) {

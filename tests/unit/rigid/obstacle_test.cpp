@@ -55,9 +55,7 @@ std::unique_ptr<Obstacle> placed(const std::string& type, Index dimension, const
 }
 
 /// Accuracy of the gaps and normals of a type.
-double rounding_of(const std::string& type) {
-  return type == "implicit" ? 1e-11 : 1e-14;
-}
+double rounding_of(const std::string& type) { return type == "implicit" ? 1e-11 : 1e-14; }
 
 class Obstacles : public testing::TestWithParam<std::tuple<std::string, Index, std::string>> {
  protected:

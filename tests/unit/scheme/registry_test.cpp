@@ -124,9 +124,7 @@ TEST_F(OutsideScheme, IsInTheSchemaAndInTheDocumentation) {
   EXPECT_NE(case_reference().find("Rate of decay; for the scheme \"drag\" only."), std::string::npos);
 }
 
-TEST_F(OutsideScheme, HasANameOfItsOwn) {
-  EXPECT_THROW(scheme_registry().add(drag_scheme()), Error);
-}
+TEST_F(OutsideScheme, HasANameOfItsOwn) { EXPECT_THROW(scheme_registry().add(drag_scheme()), Error); }
 
 TEST(Registry, MakesByNameWithParametersInCode) {
   EXPECT_NE(make_scheme("newmark", 0.1, {{"beta", 0.25}, {"gamma", 0.5}}), nullptr);

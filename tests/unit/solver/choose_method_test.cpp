@@ -18,13 +18,9 @@ namespace {
 constexpr double enough_memory = 1e15;
 
 /// A factor of 10⁹ entries: 100 seconds to compute, 1.6 for the two reads of a solve; iterations take 3 seconds.
-SparseCholesky::Prediction large_factor() {
-  return {true, 1e9, 100.0 * estimated_operations_per_second};
-}
+SparseCholesky::Prediction large_factor() { return {true, 1e9, 100.0 * estimated_operations_per_second}; }
 
-IterationEstimate slow_iterations() {
-  return {100.0, 0.03 * estimated_bytes_per_second};
-}
+IterationEstimate slow_iterations() { return {100.0, 0.03 * estimated_bytes_per_second}; }
 
 ChosenMethod choose(const SparseCholesky::Prediction& predicted, long solves, double memory = enough_memory,
                     const OperatorCoefficients& coefficients = {1e6, 1.0, 0.0}) {

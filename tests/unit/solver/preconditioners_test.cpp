@@ -56,9 +56,7 @@ TEST_F(OutsidePreconditioner, SolvesTheSteps) {
   EXPECT_LE((diagonal - blocks).lpNorm<Eigen::Infinity>(), 1e-8 * blocks.lpNorm<Eigen::Infinity>());
 }
 
-TEST_F(OutsidePreconditioner, IsInTheSchema) {
-  EXPECT_NE(case_schema().find("\"diagonal\""), std::string::npos);
-}
+TEST_F(OutsidePreconditioner, IsInTheSchema) { EXPECT_NE(case_schema().find("\"diagonal\""), std::string::npos); }
 
 TEST(Preconditioners, AreMadeInOneWay) {
   EXPECT_TRUE(preconditioner_registry().all().front().type.is_block_diagonal);

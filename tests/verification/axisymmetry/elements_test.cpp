@@ -47,9 +47,7 @@ std::vector<PatchCase> patch_cases() {
 
 /// u = (a r, b z + c): the stress is uniform, σ_rr = σ_θθ.
 constexpr double a = 0.31, b = -0.23, c = 0.4;
-Vector stretched(const Vector& x) {
-  return Eigen::Vector2d(a * x[0], b * x[1] + c);
-}
+Vector stretched(const Vector& x) { return Eigen::Vector2d(a * x[0], b * x[1] + c); }
 double radial_stress() {
   const Material material = test_material();
   return material.lambda() * (2.0 * a + b) + 2.0 * material.mu() * a;

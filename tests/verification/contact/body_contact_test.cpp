@@ -54,9 +54,7 @@ std::vector<Pairing> all_pairings() {
   return result;
 }
 
-std::string last_axis(int d, const char* end) {
-  return std::string(d == 2 ? "y" : "z") + end;
-}
+std::string last_axis(int d, const char* end) { return std::string(d == 2 ? "y" : "z") + end; }
 
 ContactPair pair_of(const MeshedBody& test, bool upper_carries, const std::string& multipliers) {
   const int d = test.mesh.dimension;
@@ -84,9 +82,7 @@ Vector integrals(const MeshedBody& test, const std::vector<Index>& facets) {
 }
 
 /// Nodal forces of a uniform pressure 1 on both sides: Σ D_i c_ij at own nodes, −Σ D_i m_ik at opposite ones.
-Vector forces_of_pressure(const ContactBoundary& boundary) {
-  return boundary.trace.transpose() * boundary.weights;
-}
+Vector forces_of_pressure(const ContactBoundary& boundary) { return boundary.trace.transpose() * boundary.weights; }
 
 double tolerance_of(const MeshedBody& test) {
   const bool simplices = std::ranges::all_of(

@@ -26,9 +26,7 @@ struct Wall {
   std::vector<double> point, normal;
 };
 
-std::string list(const std::vector<double>& values) {
-  return fmt::format("[{}]", fmt::join(values, ", "));
-}
+std::string list(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 
 std::string walled_case(const std::string& mesh, const std::vector<Wall>& walls, const std::vector<double>& velocity,
                         double friction, const std::string& time, const std::string& mass = "equivalent",

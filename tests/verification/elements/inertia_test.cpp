@@ -12,9 +12,7 @@
 /// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), compared with exact values.
 namespace ricochet::test_support::inertia_test {
 
-std::vector<int> counts_of(int dimension, int count) {
-  return std::vector<int>(std::size_t(dimension), count);
-}
+std::vector<int> counts_of(int dimension, int count) { return std::vector<int>(std::size_t(dimension), count); }
 
 /// Moments of the image of [0, 1]ᵈ under x ↦ A x + b, from those of the unit box: 1, ½, ⅓ or ¼.
 Matrix exact_box_moments(const Matrix& a, const Vector& b) {
@@ -47,9 +45,7 @@ double relative_error(const Matrix& found, const Matrix& exact) {
   return (found - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff();
 }
 
-SparseMatrix consistent_mass(const MeshedBody& test) {
-  return assemble_scalar_mass(test.body, node_graph(test.space));
-}
+SparseMatrix consistent_mass(const MeshedBody& test) { return assemble_scalar_mass(test.body, node_graph(test.space)); }
 
 class Inertia : public testing::TestWithParam<ElementKind> {
  protected:

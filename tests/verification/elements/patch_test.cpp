@@ -37,9 +37,7 @@ Matrix gradient(int dimension) {
   return h.topLeftCorner(dimension, dimension);
 }
 
-Vector shift(int dimension) {
-  return Vector::LinSpaced(dimension, 0.4, -0.9);
-}
+Vector shift(int dimension) { return Vector::LinSpaced(dimension, 0.4, -0.9); }
 
 /// The law written out independently: in plane stress from E and ν, not through the condensed λ of the library.
 Matrix stress_of(const Matrix& h, PlaneState plane) {

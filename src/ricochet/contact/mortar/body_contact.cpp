@@ -311,9 +311,7 @@ BodyPairing::BodyPairing(const Body& body, const ContactPair& pair)
 
 BodyPairing::~BodyPairing() = default;
 
-const std::vector<Index>& BodyPairing::facing_facets() const {
-  return implementation_->facing;
-}
+const std::vector<Index>& BodyPairing::facing_facets() const { return implementation_->facing; }
 
 BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent& is_free) const {
   const Implementation& own = *implementation_;

@@ -83,9 +83,7 @@ struct SegmentFinder::Cut {
 
 namespace {
 
-bool is_among(const std::vector<int>& facets, int facet) {
-  return std::ranges::binary_search(facets, facet);
-}
+bool is_among(const std::vector<int>& facets, int facet) { return std::ranges::binary_search(facets, facet); }
 
 /// Whether the extent of a box along a unit vector overlaps the interval.
 bool overlaps(const BoxTree::Box& box, const Vector3& along, double from, double to) {

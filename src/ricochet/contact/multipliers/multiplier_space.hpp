@@ -83,9 +83,7 @@ using MultiplierSpaceRegistration = Registration<MultiplierSpaceType>;
 
 /// Registry of all spaces. A program may add its own.
 [[nodiscard]] Registry<MultiplierSpaceType>& multiplier_space_registry();
-[[nodiscard]] inline std::vector<std::string> multiplier_space_names() {
-  return multiplier_space_registry().names();
-}
+[[nodiscard]] inline std::vector<std::string> multiplier_space_names() { return multiplier_space_registry().names(); }
 /// Creates a space by its name in case files; throws Error(invalid_input) that lists the names. The
 /// patch must outlive the space.
 [[nodiscard]] std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name,

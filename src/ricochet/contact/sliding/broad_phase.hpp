@@ -12,9 +12,7 @@ namespace ricochet {
 /// Distance (length) within which points have rows: four times the motion of the step plus a tenth of a cell's height,
 /// since two surfaces approach by at most twice the motion, and forces may move points farther in a step than predicted
 /// when its rows were computed.
-[[nodiscard]] inline double reach_of_sliding(double way, double height) {
-  return 4.0 * way + 0.1 * height;
-}
+[[nodiscard]] inline double reach_of_sliding(double way, double height) { return 4.0 * way + 0.1 * height; }
 
 /// Bounding boxes of surfaces, each of which many pairs may share. A gap is no less than the distance of two boxes, so
 /// that points of a pair whose boxes are farther apart than their reach would have no rows in any case. Only pairs from

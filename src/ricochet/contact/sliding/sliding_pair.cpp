@@ -243,33 +243,19 @@ SlidingPair::SlidingPair(Data data) : implementation_(std::make_unique<Implement
 
 SlidingPair::~SlidingPair() = default;
 
-const SlidingPair::Data& SlidingPair::data() const {
-  return implementation_->data;
-}
+const SlidingPair::Data& SlidingPair::data() const { return implementation_->data; }
 
-bool SlidingPair::is_self() const {
-  return implementation_->is_self;
-}
+bool SlidingPair::is_self() const { return implementation_->is_self; }
 
-double SlidingPair::detection_depth() const {
-  return implementation_->detection_depth;
-}
+double SlidingPair::detection_depth() const { return implementation_->detection_depth; }
 
-int SlidingPair::dimension() const {
-  return implementation_->data.body.space->dimension;
-}
+int SlidingPair::dimension() const { return implementation_->data.body.space->dimension; }
 
-int SlidingPair::degree() const {
-  return implementation_->data.body.space->degree;
-}
+int SlidingPair::degree() const { return implementation_->data.body.space->degree; }
 
-const std::vector<Index>& SlidingPair::nodes() const {
-  return implementation_->surfaces.nodes();
-}
+const std::vector<Index>& SlidingPair::nodes() const { return implementation_->surfaces.nodes(); }
 
-double SlidingPair::height() const {
-  return implementation_->least_height;
-}
+double SlidingPair::height() const { return implementation_->least_height; }
 
 SlidingVector SlidingPair::normal(std::size_t point, const Vector& displacement) const {
   return points()[point].normal.at(implementation_->data.body.space->nodes, displacement).normalized();

@@ -39,9 +39,7 @@ void check_elastic_constants(const ParameterCheck& check, Parameters& values) {
   }
 }
 
-KeySets elastic_constant_pairs() {
-  return {{"lambda", "mu"}, {"young", "poisson"}};
-}
+KeySets elastic_constant_pairs() { return {{"lambda", "mu"}, {"young", "poisson"}}; }
 
 ElasticConstants elastic_constants(const Parameters& parameters) {
   if (!parameters.has("young")) return {parameters.number("lambda"), parameters.number("mu")};

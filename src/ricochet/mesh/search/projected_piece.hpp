@@ -9,9 +9,7 @@ namespace ricochet {
 /// A point of the plane perpendicular to the direction; the second coordinate is 0 in two dimensions.
 using PlanePoint = Eigen::Vector2d;
 
-[[nodiscard]] inline double plane_cross(const PlanePoint& a, const PlanePoint& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
+[[nodiscard]] inline double plane_cross(const PlanePoint& a, const PlanePoint& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// A projected triangle or segment, counter-clockwise, with its height along the direction as a linear function.
 struct ProjectedPiece {

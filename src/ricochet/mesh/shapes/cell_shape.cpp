@@ -49,17 +49,11 @@ const std::vector<CellShape>& cell_shapes() {
   return all;
 }
 
-int dimension(CellShape shape) {
-  return describe(shape).dimension;
-}
+int dimension(CellShape shape) { return describe(shape).dimension; }
 
-int vertex_count(CellShape shape) {
-  return int(describe(shape).vertices.size());
-}
+int vertex_count(CellShape shape) { return int(describe(shape).vertices.size()); }
 
-bool is_simplex(CellShape shape) {
-  return vertex_count(shape) == dimension(shape) + 1;
-}
+bool is_simplex(CellShape shape) { return vertex_count(shape) == dimension(shape) + 1; }
 
 std::string name(CellShape shape) {
 #define RICOCHET_NAME_SHAPE(shape) #shape,

@@ -259,9 +259,7 @@ void RigidSurface::reverse_orientation() {
   for (Edge& edge : corner_normals_) edge.normal = -edge.normal;
 }
 
-double RigidSurface::volume() const {
-  return moments().volume;
-}
+double RigidSurface::volume() const { return moments().volume; }
 
 /// Sums over cones from the centre of the box to the facets, so that no accuracy is lost far from the origin. For a
 /// tetrahedron (0, a, b, c), ∫ r rᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ) with s = a + b + c; for a triangle,

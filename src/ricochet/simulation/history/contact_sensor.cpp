@@ -200,9 +200,7 @@ Registration<ProbeKind> contact_probe() {
           .alternatives = {{"contact"}}};
 }
 
-std::vector<RowQuantity> pair_force_quantities() {
-  return PairForceSensor::descriptions();
-}
+std::vector<RowQuantity> pair_force_quantities() { return PairForceSensor::descriptions(); }
 
 std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                             const std::vector<SensedPair>& pairs) {

@@ -69,9 +69,7 @@ class FreeBodySensor final : public QuantitySensor<FreeBodySensor> {
 
 }  // namespace
 
-std::vector<RowQuantity> free_body_quantities() {
-  return FreeBodySensor::descriptions();
-}
+std::vector<RowQuantity> free_body_quantities() { return FreeBodySensor::descriptions(); }
 
 std::unique_ptr<Sensor> make_free_body_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                               const Obstacle& obstacle) {

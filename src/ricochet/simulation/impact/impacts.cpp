@@ -113,9 +113,7 @@ void ImpactRecorder::find_other_forces() {
   }
 }
 
-void ImpactRecorder::enter_impulse(const State& state) {
-  store_velocity(state, velocity_before_);
-}
+void ImpactRecorder::enter_impulse(const State& state) { store_velocity(state, velocity_before_); }
 
 ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t collision) const {
   Acting acting;

@@ -10,9 +10,7 @@ std::string coordinates(const std::vector<double>& position) {
   return text + ")";
 }
 
-std::string when(double time) {
-  return time == 0.0 ? "at the start" : fmt::format("at t = {:.6g}", time);
-}
+std::string when(double time) { return time == 0.0 ? "at the start" : fmt::format("at t = {:.6g}", time); }
 
 std::string depth_text(const UnwatchedPenetration& p) {
   return fmt::format("{:.3g} ({:.2g} of {} size)", p.depth, p.relative_depth,

@@ -54,9 +54,7 @@ bool has_corner(const BodySurface::Corners& corners, int node) {
   return std::ranges::find(corners, node) != corners.end();
 }
 
-Vector3 mirrored(const Vector3& vector) {
-  return {-vector[0], vector[1], vector[2]};
-}
+Vector3 mirrored(const Vector3& vector) { return {-vector[0], vector[1], vector[2]}; }
 
 }  // namespace
 

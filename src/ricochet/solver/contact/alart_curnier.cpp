@@ -77,9 +77,7 @@ double AlartCurnierStep::factor_work(double unknowns) {
 }
 
 /// Counts the matrix, a factor in half the memory, and the earlier vectors.
-double AlartCurnierStep::iteration_work(double unknowns) {
-  return 1.5 * unknowns * unknowns + 30.0 * unknowns;
-}
+double AlartCurnierStep::iteration_work(double unknowns) { return 1.5 * unknowns * unknowns + 30.0 * unknowns; }
 
 /// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of
 /// x − x_present added, full steps stay defined, and their limits are the solutions of the problem itself.

@@ -87,9 +87,7 @@ class ProductOperator final : public ContactOperator {
 
 }  // namespace
 
-std::shared_ptr<ContactOperator> make_dense_operator(Matrix w) {
-  return std::make_shared<DenseOperator>(std::move(w));
-}
+std::shared_ptr<ContactOperator> make_dense_operator(Matrix w) { return std::make_shared<DenseOperator>(std::move(w)); }
 
 std::shared_ptr<ContactOperator> make_sparse_operator(SparseMatrix w) {
   return std::make_shared<SparseOperator>(std::move(w));

@@ -164,9 +164,7 @@ PaddedVector solve_coulomb(const ReducedPoint& reduced, const ContactPoint& poin
   return reduced.reaction(normal, direction * (coefficient * normal));
 }
 
-double squared(double value) {
-  return value * value;
-}
+double squared(double value) { return value * value; }
 
 /// Slips to the side against the slip without friction.
 PaddedVector slip_in_two_dimensions(double coefficient, const PointOperator& block, const PaddedVector& q) {

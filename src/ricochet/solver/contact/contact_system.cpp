@@ -22,9 +22,7 @@ constexpr Index many_rows = 350;
 constexpr int largest_exponent = 960;
 
 /// Largest power of two that does not exceed a value.
-double power_of_two(double value) {
-  return std::isnormal(value) ? std::ldexp(1.0, std::ilogb(value)) : 1.0;
-}
+double power_of_two(double value) { return std::isnormal(value) ? std::ldexp(1.0, std::ilogb(value)) : 1.0; }
 
 }  // namespace
 

@@ -72,13 +72,9 @@ bool ContactCandidates::some_may_touch(const ContactConditions& conditions) cons
   return false;
 }
 
-std::size_t ContactCandidates::max_count() const {
-  return std::max(max_ahead, room_to_grow * closed_);
-}
+std::size_t ContactCandidates::max_count() const { return std::max(max_ahead, room_to_grow * closed_); }
 
-bool ContactCandidates::are_too_many() const {
-  return points_.size() > flood * max_count();
-}
+bool ContactCandidates::are_too_many() const { return points_.size() > flood * max_count(); }
 
 std::vector<Index> ContactCandidates::nearest(const ContactConditions& conditions) const {
   const double limit = ahead * reach_;

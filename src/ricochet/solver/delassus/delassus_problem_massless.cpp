@@ -37,9 +37,7 @@ void DelassusProblem::set_rows(const LinearStage& stage) {
   }
 }
 
-void DelassusProblem::invalidate_columns() {
-  has_new_factor_ = true;
-}
+void DelassusProblem::invalidate_columns() { has_new_factor_ = true; }
 
 /// Rescales by powers of two: nothing is rounded.
 void DelassusProblem::set_scale(double scale) {

@@ -21,18 +21,14 @@ MasslessContactNodes::MasslessContactNodes(const SemidiscreteProblem& problem, c
   factor_vector_.setZero(factor_.work_size());
 }
 
-Index MasslessContactNodes::size() const {
-  return factor_.size();
-}
+Index MasslessContactNodes::size() const { return factor_.size(); }
 
 void MasslessContactNodes::clear() {
   columns_.clear();
   compliance_.resize(0, 0);
 }
 
-Matrix MasslessContactNodes::compliance() const {
-  return factor_.scale() * compliance_;
-}
+Matrix MasslessContactNodes::compliance() const { return factor_.scale() * compliance_; }
 
 void MasslessContactNodes::find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                                        Vector& motion) {

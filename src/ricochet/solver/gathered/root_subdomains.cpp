@@ -67,9 +67,7 @@ void RootSubdomains::gather_body(const std::vector<Index>& points, const RegionN
   subdomains_->set_layers(region.layers);
 }
 
-std::size_t RootSubdomains::partition_on_root() {
-  return subdomains_ ? subdomains_->partition(points_) : 0;
-}
+std::size_t RootSubdomains::partition_on_root() { return subdomains_ ? subdomains_->partition(points_) : 0; }
 
 void RootSubdomains::make_on_root(std::size_t number, std::size_t count) {
   if (subdomains_) subdomains_->make_share(number, count);

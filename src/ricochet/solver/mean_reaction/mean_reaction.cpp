@@ -80,9 +80,7 @@ void MeanReaction::set_end_reaction(const Vector& reaction) {
   has_path_ = false;
 }
 
-Vector MeanReaction::normals(const Vector& rows) const {
-  return rows(normal_rows_);
-}
+Vector MeanReaction::normals(const Vector& rows) const { return rows(normal_rows_); }
 
 bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const Vector& reaction, Vector& mean) {
   has_path_ = !(start_.isZero(0.0) && reaction.isZero(0.0) && acting.isZero(0.0));

@@ -11,9 +11,7 @@ namespace {
 
 constexpr const char* benchmark_page_mark = "ricochet benchmark";
 
-std::string wide_table(const ResultTable& table) {
-  return "<div class=\"wide\">\n" + to_html(table) + "</div>\n";
-}
+std::string wide_table(const ResultTable& table) { return "<div class=\"wide\">\n" + to_html(table) + "</div>\n"; }
 
 std::string matrix_in_html(const ScorecardMatrix& matrix) {
   std::string text = wide_table(matrix.totals);
@@ -43,8 +41,6 @@ std::string make_benchmark_page(const BenchmarkPlan& plan, const BenchmarkResult
   return page + "</ul>\n" + page_end();
 }
 
-bool is_benchmark_page(const std::string& path) {
-  return is_page_with(benchmark_page_mark, path);
-}
+bool is_benchmark_page(const std::string& path) { return is_page_with(benchmark_page_mark, path); }
 
 }  // namespace ricochet

@@ -58,9 +58,7 @@ std::vector<std::string> masses_to_try(const RequestedMethod& method, const std:
 
 }  // namespace
 
-std::string RequestedMethod::text() const {
-  return mass.empty() ? scheme : scheme + "/" + mass;
-}
+std::string RequestedMethod::text() const { return mass.empty() ? scheme : scheme + "/" + mass; }
 
 std::vector<RequestedMethod> parse_methods(const std::string& text) {
   std::vector<RequestedMethod> methods;

@@ -19,9 +19,7 @@ std::string percent_text(double percent) {
   return percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
 }
 
-bool is_done(const BenchmarkRunResult& result) {
-  return result.state.status_text() == "done";
-}
+bool is_done(const BenchmarkRunResult& result) { return result.state.status_text() == "done"; }
 
 /// Returns a text such as "14/15 +0.1 −3 %", with the energy created and lost if large enough to show.
 std::string done_text(const BenchmarkRunResult& result) {

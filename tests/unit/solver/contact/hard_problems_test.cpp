@@ -51,9 +51,7 @@ ContactSolution expect_solved(const FrictionProblem& problem, double tolerance) 
   return solution;
 }
 
-double largest(const Vector& vector) {
-  return vector.lpNorm<Eigen::Infinity>();
-}
+double largest(const Vector& vector) { return vector.lpNorm<Eigen::Infinity>(); }
 
 // Redundant points.
 
