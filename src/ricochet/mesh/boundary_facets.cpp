@@ -23,7 +23,7 @@ Key key_of(const Index* cell, const std::vector<int>& local) {
 }
 
 Index smallest_vertex(const Key& key) {
-  return *std::ranges::find_if(key, [](Index vertex) { return vertex >= 0; });
+  return *std::find_if(key.begin(), key.end(), [](Index vertex) { return vertex >= 0; });
 }
 
 bool comes_before(const CellFacet& a, const CellFacet& b) {
