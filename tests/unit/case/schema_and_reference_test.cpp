@@ -33,7 +33,7 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     const Json required = schema.value("required", Json::array());
     // A key of one type is required where that type is named; one that gives way, only without the others.
     const bool always = key.required && key.only_for.empty() && key.replaced_by.empty();
-    EXPECT_EQ(std::ranges::find(required, key.name) != required.end(), always);
+    EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
   }
 }

@@ -125,7 +125,7 @@ TEST(PackedLaw, FunctionsOfPacksHaveAllDigits) {
 
 /// A negative volume has no energy.
 TEST(PackedLaw, IsNotFiniteWhereTheVolumeIsNegative) {
-  std::vector<double> strains(static_cast<std::size_t>(6 * pack_width()), 0.0), energies(std::size_t(pack_width()));
+  std::vector<double> strains(static_cast<std::size_t>(6 * pack_width()), 0.0), energies(strains.size() / 6);
   std::fill_n(strains.begin(), pack_width(), -0.6);
   for (const std::string name : {"neo-hookean", "mooney-rivlin"}) {
     const PackedCase& each = name == "neo-hookean" ? packed_laws()[2] : packed_laws()[3];
