@@ -42,7 +42,7 @@ std::vector<Method> methods() {
 Vector slip_of(CaseRun& run, const Vector& before, const Vector& ahead_before) {
   const State& state = run.state();
   if (run.input().time.scheme != "klr-conserving") return state.displacement - before;
-  return 0.5 * (ahead_before + state.memory.at("increment_ahead"));
+  return 0.5 * (ahead_before + state.memory.at("increment_ahead", state.displacement.size()));
 }
 
 /// Largest violations of the law, relative to the largest reaction and slip so far, and the statuses that occurred.
@@ -105,7 +105,9 @@ void expect_law(const ThrownBody& body, const Method& method, const std::string&
   Seen seen;
   Vector before = run.state().displacement;
   const auto ahead = [&] {
-    return run.state().memory.count("increment_ahead") > 0 ? run.state().memory.at("increment_ahead") : Vector();
+    return run.state().memory.count("increment_ahead") > 0
+               ? run.state().memory.at("increment_ahead", run.state().displacement.size())
+               : Vector();
   };
   Vector ahead_before = ahead();
   run.run(
@@ -261,10 +263,10 @@ TEST(FrictionEnergy, KlrLosesWhatFrictionTakesAndNeverGains) {
       };
       double before = energy(), worst = 0.0, gain = 0.0, total = 0.0;
       const double first = before;
-      Vector ahead = run.state().memory.at("increment_ahead");
+      Vector ahead = run.state().memory.at("increment_ahead", run.state().displacement.size());
       run.run(
           [&] {
-            const Vector& next = run.state().memory.at("increment_ahead");
+            const Vector& next = run.state().memory.at("increment_ahead", run.state().displacement.size());
             const Vector slip = run.problem().contact.rows->tangential_trace * (0.5 * (ahead + next));
             const double friction = -run.state().forces.tangential_reaction.dot(slip);
             const double now = energy();
@@ -307,7 +309,8 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
       const bool klr = method.scheme.find("klr") != std::string::npos;
       const double h = run.input().time.step;
       const auto momentum = [&]() -> Vector {
-        const Vector v = klr ? Vector(run.state().memory.at("increment_ahead") / h) : run.state().velocity;
+        const Vector v = klr ? Vector(run.state().memory.at("increment_ahead", run.state().displacement.size()) / h)
+                             : run.state().velocity;
         return resultants(problem, problem.mass.to_sparse() * v);
       };
       const auto force = [&] {

@@ -158,7 +158,15 @@ TEST(Resume, AdaptiveSteps) {
 
 /// Entries that another one of the same type takes the place of: the next number, none, and one too many.
 std::vector<Snapshot::Value> damaged(const Snapshot::Value& value) {
-  if (const auto* texts = std::get_if<Snapshot::Texts>(&value)) return {Snapshot::Texts(texts->size(), "x")};
+  if (const auto* texts = std::get_if<Snapshot::Texts>(&value)) {
+    std::vector<Snapshot::Value> result{Snapshot::Texts(texts->size(), "x")};
+    for (std::size_t k = 0; k < texts->size(); ++k) {
+      Snapshot::Texts fewer = *texts;
+      fewer.erase(fewer.begin() + std::ptrdiff_t(k));
+      result.emplace_back(fewer);
+    }
+    return result;
+  }
   if (const auto* integers = std::get_if<Snapshot::Integers>(&value)) {
     std::vector<Snapshot::Value> result{Snapshot::Integers{}};
     for (const std::int64_t change : {std::int64_t{-1}, std::int64_t{1}, std::int64_t{1} << 40}) {
@@ -181,7 +189,12 @@ TEST(Resume, DamagedEntriesEndInNoOtherError) {
   finite.insert(finite.find("density"), "law = \"neo-hookean\"\n");
   const std::string iterative =
       dragged_case(disc, "equivalent", newmark, friction) + "[solver]\nmethod = \"iterative\"\n";
-  for (const std::string& text : {linear, finite, iterative}) {
+  const auto with_memory = [&](const std::string& scheme) {
+    return dragged_case(disc, test_support::masses_of(scheme).back(), test_support::time_of(scheme),
+                        test_support::takes_friction(scheme) ? friction : "");
+  };
+  for (const std::string& text : {linear, finite, iterative, with_memory("nonsmooth-generalized-alpha"),
+                                  with_memory("semi-explicit"), with_memory("paoli-schatzman")}) {
     CaseRun run(text);
     for (int step = 0; step < 75; ++step) run.simulation().advance();
     const Snapshot whole = snapshot_of(run.simulation());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 #include "ricochet/contact/row_values.hpp"
 #include "ricochet/problem/viscous_force.hpp"
@@ -48,8 +49,7 @@ void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, S
 }
 
 /// Saves and loads the scheme's memory: vectors of one of these sizes.
-void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> sizes,
-                    std::map<std::string, Vector>& memory) {
+void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> sizes, SchemeMemory& memory) {
   Snapshot::Texts names;
   for (const auto& [key, values] : memory) names.push_back(key);
   visit("memory", names);
@@ -63,6 +63,17 @@ void persist_memory(const SnapshotVisitor& visit, std::initializer_list<Index> s
 }
 
 }  // namespace
+
+const Vector& SchemeMemory::at(const std::string& name, Index size) const {
+  const auto found = find(name);
+  if (found == end()) Snapshot::refuse("memory." + name, "is missing");
+  if (found->second.size() != size) Snapshot::refuse("memory." + name, "has a length that does not fit this problem");
+  return found->second;
+}
+
+Vector& SchemeMemory::at(const std::string& name, Index size) {
+  return const_cast<Vector&>(std::as_const(*this).at(name, size));
+}
 
 void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, State& state) {
   const Index dofs = problem.dof_count(), points = problem.contact.size();

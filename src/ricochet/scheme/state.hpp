@@ -19,6 +19,13 @@ struct StepForces : Reactions {
   Vector damping_force;                     ///< C times the scheme's velocity, per dof; empty without damping
 };
 
+/// Vectors by name. `at` throws Error(invalid_input) if there is none of this size: a checkpoint that was loaded is
+/// damaged.
+struct SchemeMemory : std::map<std::string, Vector> {
+  [[nodiscard]] Vector& at(const std::string& name, Index size);
+  [[nodiscard]] const Vector& at(const std::string& name, Index size) const;
+};
+
 struct State {
   long step = 0;
   double time = 0.0;
@@ -33,10 +40,10 @@ struct State {
   ObstacleMotion obstacle_increment;
   int iterations = 0;         ///< of the contact solver in the last step
   int newton_iterations = 0;  ///< Newton iterations of the last step, with all attempts and substeps; 0 if linear
-  /// Further memory of the scheme by name, so that a checkpoint can contain it: one value per dof, per supported dof,
-  /// (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
+  /// Further memory of the scheme, so that a checkpoint can contain it: one value per dof, per supported dof, (d−1) per
+  /// contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;
-  std::map<std::string, Vector> memory;
+  SchemeMemory memory;
 };
 
 /// Saves and loads a state of this problem. Throws Error(invalid_input) if sizes do not match.

@@ -19,7 +19,7 @@ void ExplicitMotion::analyse(const SemidiscreteProblem& problem, double step) {
 void ExplicitMotion::predict(const SemidiscreteProblem& problem, double step, const State& state,
                              Vector& increment) const {
   increment = step * (state.velocity + (0.5 * step) * state.acceleration);
-  const Vector& next = state.memory.at(supported_next);
+  const Vector& next = state.memory.at(supported_next, problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
     const Index dof = problem.supports.dofs()[std::size_t(i)];
     increment[dof] = next[i] - state.displacement[dof];
@@ -30,7 +30,7 @@ void ExplicitMotion::predict(const SemidiscreteProblem& problem, double step, co
 void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& correction, double step, State& state,
                           Vector& increment) {
   const Index count = state.displacement.size();
-  const Vector& next = state.memory.at(supported_next);
+  const Vector& next = state.memory.at(supported_next, problem.supports.size());
   support_increment_.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
     const Index dof = problem.supports.dofs()[std::size_t(i)];

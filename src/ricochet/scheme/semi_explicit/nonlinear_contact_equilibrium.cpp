@@ -45,7 +45,7 @@ void NonlinearContactEquilibrium::start(State& state) const {
 void NonlinearContactEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state,
                                                    StageSolve& stages) {
   if (!problem.has_contact_dofs() || progress_.iterations() <= renewal_iterations) return;
-  double& from = state.memory.at(contact_renewal)[0];
+  double& from = state.memory.at(contact_renewal, State::memory_numbers)[0];
   if (double(state.step) < from) return;
   from = double(state.step) + steps_between_renewals;
   stages.renew_operators(state.displacement, state.displacement);

@@ -19,7 +19,7 @@ void SupportedMotion::advance(const SemidiscreteProblem& problem, const Vector& 
                               const Vector& force, const Vector& load, const Vector& increment, double step,
                               State& state) {
   if (problem.supports.size() == 0) return;
-  Vector& next = state.memory.at(supported_next);
+  Vector& next = state.memory.at(supported_next, problem.supports.size());
   problem.supports.values(state.time + 2.0 * step, next);
   if (contact_force_.size() == 0) contact_force_.setZero(problem.dof_count());
   for (const Index dof : contact_node_dofs_) contact_force_[dof] = 0.0;

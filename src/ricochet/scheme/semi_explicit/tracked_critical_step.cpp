@@ -91,7 +91,7 @@ void TrackedCriticalStep::start(const SemidiscreteProblem& problem, double step,
 
 /// Stores a critical step with the displacement of the state.
 void TrackedCriticalStep::store(double critical, State& state) {
-  Vector& numbers = state.memory.at(critical_numbers);
+  Vector& numbers = state.memory.at(critical_numbers, State::memory_numbers);
   numbers[last_found] = critical;
   smallest_ = numbers[smallest_found] = std::min(numbers[smallest_found], critical);
   numbers[found_at] = double(state.step);
@@ -99,7 +99,7 @@ void TrackedCriticalStep::store(double critical, State& state) {
 }
 
 std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& problem, const State& state) const {
-  const Vector& mode = state.memory.at(critical_mode);
+  const Vector& mode = state.memory.at(critical_mode, state.displacement.size());
   Index at = 0;
   if (mode.size() == 0 || mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
   const Index node = at / problem.dimension;
@@ -109,9 +109,7 @@ std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& proble
 }
 
 void TrackedCriticalStep::require_stable(const SemidiscreteProblem& problem, double step, const State& state) {
-  const Vector& numbers = state.memory.at(critical_numbers);
-  if (numbers.size() != State::memory_numbers || state.memory.at(critical_mode).size() != problem.dof_count())
-    Snapshot::refuse(critical_numbers, "or its mode has a length that does not fit this problem");
+  const Vector& numbers = state.memory.at(critical_numbers, State::memory_numbers);
   smallest_ = numbers[smallest_found];
   const double critical = numbers[last_found];
   if (step < critical) return;
@@ -127,7 +125,7 @@ void TrackedCriticalStep::require_stable(const SemidiscreteProblem& problem, dou
 
 /// Largest relative change of a distance of neighbours since the last check, weighted.
 double TrackedCriticalStep::change_since(const SemidiscreteProblem& problem, const State& state) const {
-  const Vector& before = state.memory.at(critical_displacement);
+  const Vector& before = state.memory.at(critical_displacement, state.displacement.size());
   const double* const u = state.displacement.data();
   const double* const u0 = before.data();
   const double* const x = problem.nodes.data();
@@ -160,7 +158,7 @@ double TrackedCriticalStep::change_since(const SemidiscreteProblem& problem, con
 
 bool TrackedCriticalStep::is_due(const SemidiscreteProblem& problem, double step, double energy,
                                  const State& state) const {
-  const Vector& numbers = state.memory.at(critical_numbers);
+  const Vector& numbers = state.memory.at(critical_numbers, State::memory_numbers);
   if (!std::isfinite(numbers[last_found])) return false;  // no dof has both mass and freedom
   const double room = 1.0 - step / numbers[last_found];
   if (change_since(problem, state) > std::clamp(part_of_room * room, min_change, max_change)) return true;
@@ -183,7 +181,7 @@ double TrackedCriticalStep::find(const SemidiscreteProblem& problem, const Vecto
     problem.internal_force->evaluate(displacement_, force_);
     y = inverse_root_.cwiseProduct(force_ - force) / scale;
   };
-  Vector& mode = state.memory.at(critical_mode);
+  Vector& mode = state.memory.at(critical_mode, state.displacement.size());
   // Each check has another random part: the next ones find what one misses.
   std::mt19937_64 generator(static_cast<std::uint64_t>(state.step));
   std::normal_distribution<double> normal;
@@ -198,7 +196,7 @@ void TrackedCriticalStep::track(const SemidiscreteProblem& problem, double step,
   if (!is_due(problem, step, energy, state)) return;
   const double critical = critical_of(find(problem, force, state));
   store(critical, state);
-  Vector& numbers = state.memory.at(critical_numbers);
+  Vector& numbers = state.memory.at(critical_numbers, State::memory_numbers);
   numbers[evaluations_made] += products;
   if (log::enabled(log::Level::debug)) {
     log::debug(fmt::format(
