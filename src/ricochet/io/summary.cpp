@@ -53,16 +53,18 @@ double RunSummary::part_done() const {
 
 double RunSummary::delay_of(const std::string& column) const {
   if (adaptive) return 0.0;  // values are offset by fractions of steps of different lengths
-  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum") ||
-      column.starts_with("angular_momentum"))
-    return energy_instant * step;
   // Names of probes and bodies may be any; what follows them is the quantity.
   const std::size_t dot = column.rfind('.');
   const std::string quantity = dot == std::string::npos ? column : column.substr(dot);
-  constexpr std::array forces{"contact_force",     ".contact_force", ".reaction", ".pressure",
-                              ".nominal_pressure", ".force_",        ".moment_",  ".support_"};
-  const bool is_force = column.starts_with("pair_force.") ||
-                        std::ranges::any_of(forces, [&](const char* name) { return quantity.starts_with(name); });
+  const auto begins = [](const std::string& text) {
+    return [&text](const char* name) { return text.starts_with(name); };
+  };
+  constexpr std::array momenta{"momentum_", "angular_momentum_"};
+  if (quantity.ends_with("_energy") || quantity == "load_potential" || std::ranges::any_of(momenta, begins(quantity)) ||
+      column.starts_with("momentum."))
+    return energy_instant * step;
+  constexpr std::array forces{"contact_force_", ".contact_force_", ".reaction_", ".pressure", ".nominal_pressure"};
+  const bool is_force = column.starts_with("pair_force.") || std::ranges::any_of(forces, begins(quantity));
   return is_force ? force_instant * step : 0.0;
 }
 

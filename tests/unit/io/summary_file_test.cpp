@@ -66,7 +66,6 @@ TEST(SummaryFile, RefusesAFileWithoutAnEntry) {
   }
 }
 
-/// The schema lists the entries in the order of the file, each with a text.
 TEST(SummaryFile, KnowsThePathsOfNumbers) {
   for (const char* path :
        {"steps", "impacts.3.restitution", "impacts.0.velocity_after.2", "extrema.total_energy.maximum",
@@ -90,6 +89,7 @@ TEST(SummaryFile, KnowsThePathsOfNumbers) {
     EXPECT_EQ(summary_path_problem(path), "summary." + std::string(path) + " is not a number");
 }
 
+/// The schema lists the entries in the order of the file, each with a text.
 TEST(SummaryFile, HasASchema) {
   const Json schema = Json::parse(summary_schema()), whole = Json::parse(written_summary());
   std::vector<std::string> described, there;

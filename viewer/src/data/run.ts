@@ -140,8 +140,8 @@ export class Run {
 
   private shiftOf(column: string): number {
     if (this.summary.adaptive_steps) return 0; // parts of steps of many lengths
-    const energy = /_energy$|^load_potential$|^momentum[_.]|^angular_momentum_/.test(column);
-    const force = /(^|\.)(contact_force|pair_force|reaction|(nominal_)?pressure)|\.(force|moment|support)_/.test(column);
+    const energy = /^[^.]*_energy$|^load_potential$|^(angular_)?momentum_[^.]*$|^momentum\./.test(column);
+    const force = /^contact_force_[^.]*$|^pair_force\.|\.(contact_force|reaction|(nominal_)?pressure)[^.]*$/.test(column);
     const instant = energy ? this.summary.instants.energy : force ? this.summary.instants.force : "";
     return Number(/t ([+-][\d.]+) time_step/.exec(instant)?.[1] ?? 0);
   }
