@@ -77,9 +77,9 @@ std::string why_no_restitution(const Impact& impact) {
 }
 
 std::string restitution_doubt(const Impact& impact) {
-  constexpr double rounding = 1e-3;  // of the method: a rebound without losses may exceed 1 by as much
+  constexpr double rounding = 1e-3;  // of the method: a rebound without losses, or without any, may differ by as much
   const std::optional<double> restitution = impact.restitution();
-  if (!restitution || (*restitution >= 0.0 && *restitution <= 1.0 + rounding)) return "";
+  if (!restitution || (*restitution >= -rounding && *restitution <= 1.0 + rounding)) return "";
   if (*restitution > 1.0)
     return restitution_error(impact).is_large
                ? ""
