@@ -179,11 +179,11 @@ class Builder {
 
 }  // namespace
 
-const std::vector<CellShape> all_cell_shapes = [] {
+std::vector<CellShape> all_cell_shapes() {
   std::vector<CellShape> result = cell_shapes();
   std::erase_if(result, [](CellShape shape) { return dimension(shape) < 2; });
   return result;
-}();
+}
 
 BoxMesh box_of(CellShape shape, std::vector<int> counts) {
   BoxMesh box;
@@ -287,7 +287,7 @@ std::string ElementKind::label() const {
 
 std::vector<ElementKind> all_element_kinds() {
   std::vector<ElementKind> kinds;
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int geometry : {1, 2}) {
       for (const int displacement : {1, 2}) kinds.push_back({shape, geometry, displacement});
     }

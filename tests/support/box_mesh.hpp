@@ -58,7 +58,7 @@ struct MeshedBody {
 [[nodiscard]] double integrate(const MeshedBody& test, int degree, const std::function<double(const Vector&)>& value);
 
 /// All shapes of dimension 2 and 3, in their order.
-extern const std::vector<CellShape> all_cell_shapes;
+[[nodiscard]] std::vector<CellShape> all_cell_shapes();
 
 /// A cell shape with the degrees of its geometry and of its displacement.
 struct ElementKind {

@@ -59,7 +59,7 @@ std::string box_mesh(const std::string& name, CellShape shape, int count, const 
 }
 
 TEST(StressRaisers, ClampedBeam) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     const bool flat = dimension(shape) == 2;
     const CaseRun run(static_case(box_mesh("clamped-" + name(shape) + ".msh", shape, 4),
                                   hold("x0", flat ? R"("x", "y")" : R"("x", "y", "z")") +
@@ -70,7 +70,7 @@ TEST(StressRaisers, ClampedBeam) {
 
 /// Supports along the normal alone are mirrors: the box continues beyond them, and its free corners are unloaded.
 TEST(StressRaisers, PlanesOfSymmetryAreNone) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     const bool flat = dimension(shape) == 2;
     const CaseRun run(static_case(box_mesh("symmetric-" + name(shape) + ".msh", shape, 3),
                                   hold("x0", R"("x")") + hold("y0", R"("y")") + (flat ? "" : hold("z0", R"("z")")) +

@@ -75,7 +75,7 @@ const std::string linear = "young = 1.0e4\npoisson = 0.3\n";
 
 /// The reaction is the same on every mesh, although the contact forces at the nodes of the side depend on the mesh.
 TEST(SupportProbe, OfABodyOnASlope) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int count : {2, 5}) {
       if (dimension(shape) == 3 && count == 5) continue;
       const CaseRun run(

@@ -25,7 +25,7 @@ std::vector<Index> facets_around(const DisplacementSpace& space, Index node) {
 
 /// The order of the facets in a mesh file has no effect on the surface.
 TEST(RotatingNormal, NoOrderOfFacetsMatters) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     const int d = dimension(shape);
     BoxMesh box = box_of(shape, std::vector<int>(std::size_t(d), 3));
     box.map = bend_map();

@@ -33,7 +33,7 @@ CaseRun stack_of(const Stack& of) {
 
 std::vector<Stack> stacks() {
   std::vector<Stack> result;
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const std::string multipliers : {"p1", "dual", "p0", "nodal"}) result.push_back({shape, multipliers, 1});
     result.push_back({shape, "p1", 2});
   }

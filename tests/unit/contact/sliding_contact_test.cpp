@@ -45,7 +45,7 @@ CaseRun sled_of(const Sled& of) {
 std::vector<Sled> sleds() {
   if (is_sanitized) return {{CellShape::triangle, "p1", 2}, {CellShape::hexahedron, "p0", 1}};
   std::vector<Sled> result;
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const std::string multipliers : {"p1", "p0"}) result.push_back({shape, multipliers, 1});
     result.push_back({shape, "p1", 2});
   }

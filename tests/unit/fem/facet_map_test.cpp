@@ -18,7 +18,7 @@ Points tilted_axes(int d) {
 }
 
 TEST(FacetMap, FindsThePlacesThatItGives) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       const int d = dimension(shape);
       const auto test = make_meshed_body(

@@ -95,7 +95,7 @@ TEST_P(MeshMeasures, HeightsOfCells) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, MeshMeasures, testing::ValuesIn(all_cell_shapes),
+INSTANTIATE_TEST_SUITE_P(Shapes, MeshMeasures, testing::ValuesIn(all_cell_shapes()),
                          [](const auto& info) { return name(info.param); });
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(Overlaps, AroundANodeAreWarnedOf) {
 
 /// Angles around interior nodes add up exactly, also for distorted and curved cells.
 TEST(Overlaps, AreNotSeenWhereThereAreNone) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       BoxMesh box;
       box.shape = shape;

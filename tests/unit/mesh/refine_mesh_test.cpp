@@ -95,7 +95,7 @@ TEST(RefinedMesh, RefusesMoreCellsThanTheMachineHolds) {
   EXPECT_EQ(mesh.cell_count(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RefineMesh, testing::Combine(testing::ValuesIn(all_cell_shapes), testing::Values(1, 2)),
+INSTANTIATE_TEST_SUITE_P(All, RefineMesh, testing::Combine(testing::ValuesIn(all_cell_shapes()), testing::Values(1, 2)),
                          [](const auto& info) {
                            return name(std::get<0>(info.param)) + std::to_string(std::get<1>(info.param));
                          });

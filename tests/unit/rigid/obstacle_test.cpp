@@ -5,12 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <random>
+#include <set>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/temporary_folder.hpp"
 #include "support/errors.hpp"
 
 /// @file Properties of the gap, the normal and the motion of every obstacle.
@@ -107,6 +105,7 @@ TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
     EXPECT_GE(normal.dot(to - from) * change, -rounding());
     // The default corrects the normal, so that the force has a component along the surface.
     const bool is_corrected = normal == obstacle->shape().ObstacleShape::normal_of_step(from, to);
+    EXPECT_FALSE(is_corrected && (type() == "sphere" || type() == "cylinder"));
     const double factor = is_corrected && !obstacle->shape().is_flat() ? 0.2 : 1.0;
     EXPECT_GE(std::abs(normal.dot(to - from)), factor * std::abs(change) - rounding());
     EXPECT_LT((obstacle->shape().normal_of_step(to, to) - obstacle->normal(to)).norm(), 1e-15);
@@ -232,8 +231,8 @@ TEST(Obstacle, IsShownWhereItCanBeSeen) {
 /// Returns the registered types, except surfaces from files, with the dimensions in which they exist.
 std::vector<std::pair<std::string, Index>> types_and_dimensions() {
   std::vector<std::pair<std::string, Index>> all;
-  for (const std::string& type : obstacle_registry().names()) {
-    for (const Index dimension : {2, 3}) {
+  for (const Index dimension : {2, 3}) {
+    for (const std::string& type : obstacle_registry().names()) {
       if (type == "surface") continue;
       const bool is_in_space = dimension == 2 && has(message_of([&] { (void)shape_of(type, 2, "outside"); }),
                                                      "requires three dimensions; in two ");
@@ -243,19 +242,31 @@ std::vector<std::pair<std::string, Index>> types_and_dimensions() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Obstacles, testing::ValuesIn([] {
-                           std::vector<std::tuple<std::string, Index, std::string>> all;
-                           for (const auto& [type, dimension] : types_and_dimensions()) {
-                             all.emplace_back(type, dimension, "outside");
-                             const std::vector<std::string> keys = names_of(obstacle_registry().find(type).keys);
-                             if (std::ranges::count(keys, "side") > 0) all.emplace_back(type, dimension, "inside");
-                           }
-                           return all;
-                         }()),
-                         [](const auto& info) {
-                           return std::get<0>(info.param) + "_" + std::get<2>(info.param) + "_" +
-                                  std::to_string(std::get<1>(info.param)) + "d";
-                         });
+/// Returns type, dimension and side of all obstacles, except surfaces from files.
+std::vector<std::tuple<std::string, Index, std::string>> all_obstacles() {
+  std::vector<std::tuple<std::string, Index, std::string>> all;
+  for (const auto& [type, dimension] : types_and_dimensions()) {
+    all.emplace_back(type, dimension, "outside");
+    const auto& keys = obstacle_registry().find(type).keys;
+    if (std::ranges::count(keys, "side", &Key::name) > 0) all.emplace_back(type, dimension, "inside");
+  }
+  return all;
+}
+
+/// The other tests ask the registry which types, dimensions and sides there are.
+TEST(Obstacle, ShippedTypesKeepTheirDimensionsAndSides) {
+  std::set<std::string> all;
+  for (const auto& [type, dimension, side] : all_obstacles())
+    all.insert(type + (dimension == 2 ? " 2 " : " 3 ") + side);
+  for (const char* shipped : {"plane 2 outside", "plane 3 outside", "sphere 2 outside", "sphere 2 inside",
+                              "sphere 3 outside", "sphere 3 inside", "cylinder 3 outside", "cylinder 3 inside",
+                              "torus 3 outside", "torus 3 inside", "implicit 2 outside", "implicit 3 outside"})
+    EXPECT_TRUE(all.contains(shipped)) << shipped;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Obstacles, testing::ValuesIn(all_obstacles()), [](const auto& info) {
+  return std::get<0>(info.param) + "_" + std::get<2>(info.param) + "_" + std::to_string(std::get<1>(info.param)) + "d";
+});
 
 TEST(Obstacle, IsRefusedWithoutItsValuesOrWithOthers) {
   const auto message = [](const std::string& type, const Parameters& parameters) {
@@ -358,31 +369,6 @@ TEST(Obstacle, HasNoVelocityWhereItStartsFromRest) {
     EXPECT_NEAR(velocity("0.03*t + 0.2*t^2", step), 0.03, 1e-12 / step);
     EXPECT_NEAR(velocity("-2*sin(t)", step), -2.0, 1e-11 + 1e-12 / step);
   }
-}
-
-TEST(Obstacle, FollowsATable) {
-  const TemporaryFolder folder(std::filesystem::temp_directory_path(), "path");
-  const std::string file = folder.file("motion.csv");
-  std::ofstream(file) << "t,x,y,angle\n0,0,0,0\n1, 2, 0, 0.5\n# half as fast\n3,4,-1,0.5\n";
-  const auto path = read_path(file, 2);
-  EXPECT_TRUE(path->rotates());
-  EXPECT_NEAR(path->displacement(0.5)[0], 1.0, 1e-15);
-  EXPECT_NEAR(path->displacement(2.0)[1], -0.5, 1e-15);
-  EXPECT_NEAR(path->rotation(0.2)[0], 0.1, 1e-15);
-  EXPECT_EQ(path->displacement(-1.0)[0], 0.0);
-  EXPECT_EQ(path->displacement(9.0)[0], 4.0);
-  const auto problem = [&](const std::string& text, Index dimension) {
-    std::ofstream(file) << text;
-    return message_of([&] { (void)read_path(file, dimension); });
-  };
-  EXPECT_TRUE(has(problem("0 0 0\n1 0\n", 2), "motion.csv:2: 2 numbers"));
-  EXPECT_TRUE(has(problem("0 0 0\n0 1 1\n", 2), "motion.csv:2: the time 0 is not after 0"));
-  EXPECT_TRUE(has(problem("0 0 0\n1 nan 1\n", 2), "motion.csv:2:3: "));
-  // The first line, too: a header is letters.
-  EXPECT_TRUE(has(problem("0.0 0.0m 0.0\n1 1 1\n", 2), "motion.csv:1:5: \"0.0m\" is not a finite number"));
-  EXPECT_TRUE(has(problem("0 nan 0\n1 1 1\n", 2), "motion.csv:1:3: "));
-  EXPECT_TRUE(has(problem("t x y\n", 2), "contains no numbers"));
-  EXPECT_TRUE(has(problem("0 0 0\n", 3), "motion.csv:1: 3 numbers; each line of a motion in 3D must have 4"));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ double distance_to_box(const Eigen::Vector3d& point, int d) {
 }
 
 TEST(BoundaryFacets, AreThoseOfTheGroupThatNamesTheBoundary) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       const auto box = box_of(shape, degree);
       const DisplacementSpace& space = box->space;
@@ -60,7 +60,7 @@ TEST(BoundaryFacets, AreThoseOfTheGroupThatNamesTheBoundary) {
 TEST(BodySurface, KnowsTheDistanceToABoxWhereverItHasMovedTo) {
   const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(0, 0, 1));
   const Eigen::Vector3d shift(3.0, -2.0, 0.0);
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       const auto box = box_of(shape, degree);
       const int d = box->mesh.dimension;

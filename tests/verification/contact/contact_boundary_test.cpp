@@ -51,7 +51,7 @@ FreeComponent held_at_x0(const MeshedBody& test, const std::vector<int>& compone
 }
 
 TEST(ContactBoundary, LeavesOutMultipliersThatSupportsHoldAlongTheNormal) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       const auto test = box(shape, degree);
       const int d = test->mesh.dimension;
@@ -134,7 +134,7 @@ TEST(ContactBoundary, KeepsTheSlipThatOneHeldComponentLeavesIn3D) {
 /// For any supports on a side that bounds the contact boundary, H = [G; B_T] has full rank on the free dofs, so that
 /// the condensed operator is positive definite.
 TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       const auto test = box(shape, degree);
       const int d = test->mesh.dimension;
@@ -286,7 +286,7 @@ TEST(ContactBoundary, HasTheSizesOfThePage) {
 
 /// A length unit that differs by a power of two gives the same bits.
 TEST(ContactBoundary, HasNoUnit) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     const int d = dimension(shape);
     const double scale = 1024.0;
     const auto one = box(shape, 2);

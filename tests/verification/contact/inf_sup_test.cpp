@@ -42,7 +42,7 @@ struct Family {
 
 std::vector<Family> families() {
   std::vector<Family> result;
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int degree : {1, 2}) {
       for (const char* boundary : {"flat", "held edge", dimension(shape) == 2 ? "circle" : "bent"}) {
         result.push_back({shape, degree, boundary});

@@ -239,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, SpaceTest, testing::ValuesIn(all_element_kind
 
 /// For degree 1 the dual basis gives the displacements of the nodes.
 TEST(DualMultipliers, OfDegreeOneAreNodalForces) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     for (const int geometry : {1, 2}) {
       const int d = dimension(shape);
       const auto test =

@@ -126,7 +126,7 @@ TEST_P(RigidModes, ARotatingCellIsDetected) {
 /// Linear displacements on curved cells contain no rotation: there a rotation has an energy, which must vanish with h².
 /// (On curved meshes use degree 2 if rotation matters.)
 TEST(RigidModesOfLinearDisplacementOnCurvedCells, HaveAnEnergyOfSecondOrder) {
-  for (const CellShape shape : all_cell_shapes) {
+  for (const CellShape shape : all_cell_shapes()) {
     const int d = dimension(shape);
     std::vector<double> energies;
     std::printf("%-16s rotation energy / shear modulus, unit angle:", name(shape).c_str());
