@@ -69,6 +69,16 @@ class Documentation(TestCase):
                 found += 1
         self.assertGreater(found, 50)
 
+    def test_new_names_of_the_glossary_exist(self):
+        """The glossary says what became of the names in notes and issues: a new name that was renamed again must follow."""
+        folders = ("src", "apps", "python", "bench", "tests")
+        paths = [path for folder in folders for path in (SOURCE / folder).rglob("*") if path.suffix in (".cpp", ".hpp", ".py", ".txt")]
+        names = set(re.findall(r"\w+", "\n".join(map(str, paths)) + "\n".join(path.read_text(encoding="utf-8") for path in paths)))
+        rows = re.findall(r"^\| `[^`]*` \| (.*?) \|", (SOURCE / "docs/developers/glossary.md").read_text(encoding="utf-8"), re.MULTILINE)
+        new = [name for row in rows for code in re.findall(r"`([^`]+)`", row) for name in re.findall(r"[A-Za-z_]\w*", code)]
+        self.assertGreater(len(new), 900)
+        self.assertEqual([name for name in new if name not in names], [])
+
     def test_commands_of_the_cases_write_into_different_directories(self):
         taken = {}
         for page in sorted((SOURCE / "cases").glob("*/README.md")):
