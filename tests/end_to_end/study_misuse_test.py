@@ -142,6 +142,7 @@ class StudyMisuse(TestCase):
                 (("--exact", "summary.probe.0.position.0=1"), 'did you mean "probes.0.position.0"?'),
                 (("--quantity", "summary.contacts.0.grup"), 'did you mean "contacts.0.group"?'),
                 (("--quantity", "summary.impacts.restitution"), "specify the entry, counted from 0, as in summary.impacts.0.restitution"),
+                (("--quantity", "summary.impacts.-1.restitution"), "not from the end, as in summary.impacts.0.restitution"),
                 (("--quantity", "history.kinetic_energy(t=3)"), "the time 3 is outside the run, which extends from 0 to 0.02"),
                 (("--quantity", "max(history.kinetic_energy, 0.01, 0.03)"), "the time 0.03 is outside the run"),
                 (("--quantity", "history.kinetic_energy[11]"), "the row 11 is outside of history.csv, which has at most 11 rows"),
