@@ -172,6 +172,11 @@ class StudyMisuse(TestCase):
         self.assertIn("--quantity summary.impacts.7.restitution", process.stderr)
         self.study("some", "--vary", "time.end=0.02,0.04", "--quantity", "history.time(t=0.03)",
                    values={"output.fields_every": 0})
+        # The bounds are those of the longest run, wherever it is among them.
+        for ends in ("0.04,0.02", "0.02,0.04"):
+            for question, said in (("history.time(t=0.05)", "from 0 to 0.04"), ("history.time[30]", "at most 21 rows")):
+                self.refused(1, said, "study", BAR, "--vary", f"time.end={ends}", "--quantity", question, "-o",
+                             self.folder / "no", *settings({"time.step": 0.002}))
 
     def test_names_stay_what_they_are(self):
         """Names given by a user, a case or a mesh are not markup, whatever they look like."""
