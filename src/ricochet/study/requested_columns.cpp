@@ -58,7 +58,7 @@ std::vector<RequestedColumn> columns_in(const Study& study) {
     const Quantity quantity = parse_quantity(text);
     const std::string request = option + " " + text;
     require_possible(study, request, quantity);
-    if (quantity.kind != Quantity::Kind::summary_value) columns.push_back({request, quantity.name});
+    if (const std::string column = required_column(quantity); !column.empty()) columns.push_back({request, column});
   };
   for (const std::string& text : study.questions.quantities) add("--quantity", text);
   for (const auto& [text, value] : study.questions.exact) add("--exact", text);
