@@ -15,6 +15,7 @@
 #include "ricochet/report/reading_runs.hpp"
 #include "ricochet/report/run_data.hpp"
 #include "ricochet/study/benchmark/benchmark_page.hpp"
+#include "ricochet/study/run_state.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_page.hpp"
 #include "ricochet/study/study_table.hpp"
@@ -66,8 +67,8 @@ std::string svg_of(const std::string& description) {
 std::string write_page_of_runs(const Study& study, const ReportArguments& arguments) {
   std::vector<std::string> directories;
   for (const StudyRun& run : study.runs) {
-    if (holds_run(study.path(run)) && read_summary_of_run(study.path(run)).status == "done")
-      directories.push_back(study.path(run));
+    const RunState state = read_run_state(study.path(run));  // does not refuse runs of other versions
+    if (state.summary && state.summary->status == "done") directories.push_back(study.path(run));
   }
   if (directories.empty()) return "";
   if (directories.size() > most_runs_on_a_page) {

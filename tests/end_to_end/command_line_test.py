@@ -199,11 +199,11 @@ class CommandLine(TestCase):
         case.write_text(text.replace("value = 7.0", "value = 0.0").replace("relative", "absolute"), encoding="utf-8")
         process = self.expect_status(0, run("run", case, "-o", self.folder / "held", "--quiet"))
         self.assertIn("holds", process.stdout)
-        case.write_text(text.replace("total_energy", "totl_energy"), encoding="utf-8")
-        for process in (run("run", case, "-o", self.folder / "unknown", "--quiet"), run("validate", case)):
-            self.expect_status(2, process)
-            self.assertRegex(process.stderr, r'expecting\.toml:\d+:\d+: history\.csv has no column "totl_energy"; did you '
-                                             'mean "total_energy"')
+        for quantity in ("history.totl_energy[0]", "summary.extrema.totl_energy.first"):
+            case.write_text(text.replace("history.total_energy[0]", quantity), encoding="utf-8")
+            for process in (run("run", case, "-o", self.folder / "unknown", "--quiet"), run("validate", case)):
+                self.expect_status(2, process)
+                self.assertRegex(process.stderr, r'expecting\.toml:\d+:\d+: history\.csv has no column "totl_energy"; did you mean "total_energy"')
         self.assertFalse((self.folder / "unknown").exists())
         # All wrong groups, and a missing mesh, are reported with their locations.
         case.write_text(text.replace('"body"', '"boddy"').replace('"bottom"', '"botom"'), encoding="utf-8")

@@ -142,6 +142,10 @@ class StudyMisuse(TestCase):
                 (("--exact", "summary.probe.0.position.0=1"), 'did you mean "probes.0.position.0"?'),
                 (("--quantity", "summary.contacts.0.grup"), 'did you mean "contacts.0.group"?'),
                 (("--quantity", "summary.impacts.restitution"), "specify the entry, counted from 0, as in summary.impacts.0.restitution"),
+                (("--quantity", "summary.impacts.-1.restitution"), "not from the end, as in summary.impacts.0.restitution"),
+                (("--quantity", "summary.extrema.lowest_gap.maximum"), 'no column "lowest_gap"'),
+                (("--exact", "summary.extrema.kinetic_enrgy.maximum=1"), 'did you mean "kinetic_energy"?'),
+                (("--quantity", "summary.extrema.top.displacment_y.maximum"), 'did you mean "top.displacement_y"?'),
                 (("--quantity", "history.kinetic_energy(t=3)"), "the time 3 is outside the run, which extends from 0 to 0.02"),
                 (("--quantity", "max(history.kinetic_energy, 0.01, 0.03)"), "the time 0.03 is outside the run"),
                 (("--quantity", "history.kinetic_energy[11]"), "the row 11 is outside of history.csv, which has at most 11 rows"),
@@ -171,6 +175,12 @@ class StudyMisuse(TestCase):
         self.assertIn("--quantity summary.impacts.7.restitution", process.stderr)
         self.study("some", "--vary", "time.end=0.02,0.04", "--quantity", "history.time(t=0.03)",
                    values={"output.fields_every": 0})
+        self.study("extrema", *vary, "--quantity", "summary.extrema.top.displacement_y.maximum")
+        # The bounds are those of the longest run, wherever it is among them.
+        for ends in ("0.04,0.02", "0.02,0.04"):
+            for question, said in (("history.time(t=0.05)", "from 0 to 0.04"), ("history.time[30]", "at most 21 rows")):
+                self.refused(1, said, "study", BAR, "--vary", f"time.end={ends}", "--quantity", question, "-o",
+                             self.folder / "no", *settings({"time.step": 0.002}))
 
     def test_names_stay_what_they_are(self):
         """Names given by a user, a case or a mesh are not markup, whatever they look like."""

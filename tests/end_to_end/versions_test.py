@@ -139,6 +139,16 @@ class Versions(TestCase):
             file.write_text(file.read_text(encoding="utf-8").replace(f'"{self.version}"', '"0.2.9"'), encoding="utf-8")
             if folder == output:
                 self.assertIn(f"written by Ricochet 0.2.9; this is Ricochet {self.version}", self.expect_status(0, run("info", output)).stdout)
+                for count, pages in ((1, ["runs.html"]), (2, [])):
+                    for other in others[:count - 1]:
+                        other.write_bytes(file.read_bytes())
+                    self.expect_status(0, run("report", output))
+                    self.assertIn("written by Ricochet 0.2.9", (output / "report.html").read_text(encoding="utf-8"))
+                    self.assertEqual([path.name for path in output.glob("runs.html")], pages)
+                    (output / "report.html").unlink()
+                    (output / "runs.html").unlink(missing_ok=True)
+                for other, content in zip(others, kept):
+                    other.write_bytes(content)
             said = self.expect_status(0, run(*command, "--quiet")).stderr
             for part in (f"{file}: written by Ricochet 0.2.9; this is Ricochet {self.version}", "this run is repeated, and its results are overwritten"):
                 self.assertIn(part, said)

@@ -62,11 +62,6 @@ std::string suggestion(const TomlNode& value, const std::vector<std::string>& ch
   return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
 }
 
-/// Returns a hint if the value is a number with a unit, or "".
-std::string unit_hint(const TomlNode& value) {
-  return value.kind == Kind::text && is_number_with_unit(value.text) ? units_are_not_written : "";
-}
-
 /// Returns whether pairs of entries are the two parts of numbers with a decimal comma, between which there is no blank:
 /// [1,5, -0,5] has four entries.
 bool has_decimal_commas(const TomlNode& list) {
@@ -130,13 +125,14 @@ void ValueCheck::check_number() {
   const std::string found = describe(value_);
   if (make_finite_number(value_) && is_within(key_.range, value_.real)) return;
   const bool is_finite = value_.kind != Kind::real || std::isfinite(value_.real);
-  refuse_as(admissible_with_unit(key_), found, is_finite ? unit_hint(value_) : ", which is not finite");
+  refuse_as(admissible_with_unit(key_), found, is_finite ? unit_hint(value_.text) : ", which is not finite");
 }
 
 void ValueCheck::check_integer() {
-  refuse_unless(value_.kind == Kind::integer &&
-                (key_.choices.empty() ? is_within(key_.range, double(value_.integer))
-                                      : is_choice(std::to_string(value_.integer), key_.choices)));
+  const bool is_valid =
+      value_.kind == Kind::integer && (key_.choices.empty() ? is_within(key_.range, double(value_.integer))
+                                                            : is_choice(std::to_string(value_.integer), key_.choices));
+  if (!is_valid) refuse_as(admissible_with_unit(key_), describe(value_), unit_hint(value_.text));
 }
 
 // Checks the entries of a vector. Expressions are compiled later, when their parameters are known.
@@ -154,7 +150,7 @@ void ValueCheck::check_vector(bool with_expressions) {
     if (make_finite_number(component) || (with_expressions && component.kind == Kind::text)) continue;
     refuse(component.location,
            fmt::format("entry {} of \"{}\" must be a finite number{}; found {}{}", i + 1, key_.name,
-                       with_expressions ? " or an expression" : "", describe(component), unit_hint(component)));
+                       with_expressions ? " or an expression" : "", describe(component), unit_hint(component.text)));
   }
 }
 
@@ -167,14 +163,15 @@ void ValueCheck::check_numbers() {
     const std::string found = describe(entry);
     if (make_finite_number(entry) && is_within(key_.range, entry.real)) continue;
     refuse(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}{}", i + 1, key_.name,
-                                       admissible_with_unit(of_entry), found, unit_hint(entry)));
+                                       admissible_with_unit(of_entry), found, unit_hint(entry.text)));
   }
 }
 
 void ValueCheck::check_axial(bool allows_expressions) {
   if (value_.kind == Kind::list && value_.children.size() == 3) return check_vector(allows_expressions);
   if (allows_expressions && value_.kind == Kind::text) return;
-  refuse_unless(value_.is_number() && make_finite_number(value_));
+  if (value_.is_number() && make_finite_number(value_)) return;
+  refuse_as(admissible_with_unit(key_), describe(value_), unit_hint(value_.text));
 }
 
 void ValueCheck::check_names(const std::function<bool(const std::string& name)>& is_name, const std::string& expected) {
@@ -204,8 +201,8 @@ void ValueCheck::check_parameters() {
                          is_identifier ? "x, y, z, t and pi are reserved"
                                        : "it must consist of letters, digits and _, and not begin with a digit"));
     } else if (!make_finite_number(parameter)) {
-      refuse(parameter.location,
-             fmt::format("the parameter \"{}\" must be a finite number; found {}", name, describe(parameter)));
+      refuse(parameter.location, fmt::format("the parameter \"{}\" must be a finite number; found {}{}", name,
+                                             describe(parameter), unit_hint(parameter.text)));
     }
   }
 }

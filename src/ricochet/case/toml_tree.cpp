@@ -4,12 +4,14 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <tuple>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/case/keys.hpp"
 
 namespace ricochet {
 
@@ -81,8 +83,54 @@ std::string real_text(double value) {
   return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-/// Returns a hint if a number with a decimal comma or a unit is at a position of the document, counted from 1; else "".
-std::string number_hint(const std::string& document, const SourceLocation& location) {
+/// Values that the keys of a name accept in any section.
+struct AcceptedValues {
+  bool numbers = false, texts = false, any = false;
+};
+
+void add_accepted(const std::vector<Key>& keys, const std::string& name, AcceptedValues& accepted) {
+  using enum KeyType;
+  constexpr std::array of_numbers{number, integer, vector, numbers, axial, formula, formulas, axial_formulas};
+  constexpr std::array of_texts{text, choice, formula, formulas, axial_formulas, components, names, groups};
+  for (const Key& key : keys) {
+    add_accepted(key.keys, name, accepted);
+    if (key.name != name) continue;
+    accepted.any = true;
+    accepted.numbers = accepted.numbers || std::ranges::count(of_numbers, key.type) > 0;
+    accepted.texts = accepted.texts || std::ranges::count(of_texts, key.type) > 0 || !key.choices.empty();
+  }
+}
+
+/// Returns the name before an equals sign at this position, without the tables of a dotted key.
+std::string name_before(const std::string& line, std::size_t equals) {
+  constexpr const char* around = " \t\"'{,.";
+  const std::size_t last = line.substr(0, equals).find_last_not_of(around);
+  if (last == std::string::npos) return "";
+  const std::size_t before = line.find_last_of(around, last);  // npos: the name begins the line
+  return line.substr(before + 1, last - before);
+}
+
+/// Returns a hint if the value of a line is a text without quotes or a number with a unit, else "".
+std::string missing_quotes_hint(const std::string& line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos) return "";
+  const std::string value = line.substr(equals + 1, line.find('#', equals) - equals - 1);
+  const std::size_t begin = value.find_first_not_of(" \t\r");
+  if (begin == std::string::npos || value.find_first_of("\"'[{", begin) == begin) return "";
+  if (value.find('=') != std::string::npos || parse_toml_value(value, {})) return "";
+  AcceptedValues accepted;
+  for (const Section& section : case_sections()) add_accepted(section.keys, name_before(line, equals), accepted);
+  const std::string hint = unit_hint(value);
+  if (!hint.empty() && !accepted.any) return "; units are not written, and texts need quotes";
+  if (!hint.empty() && accepted.numbers) return hint;
+  const bool is_text = !accepted.numbers || std::isalpha(static_cast<unsigned char>(value[begin])) != 0 ||
+                       value.find_first_of("*/^(") != std::string::npos;
+  return accepted.texts && is_text ? "; texts need quotes" : "";
+}
+
+/// Returns a hint if quotes are missing, or a number with a decimal comma or a unit is at a position of the document,
+/// counted from 1; else "".
+std::string value_hint(const std::string& document, const SourceLocation& location) {
   std::size_t begin = 0;
   for (int line = 1; line < location.line; ++line) {
     begin = document.find('\n', begin);
@@ -92,9 +140,9 @@ std::string number_hint(const std::string& document, const SourceLocation& locat
   const std::string line = document.substr(begin, document.find('\n', begin) - begin);
   constexpr std::string_view digits = "0123456789";
   const auto comma = std::size_t(location.column) - 1;
-  const std::size_t equals = line.find('=');
-  if (equals < comma && line.find('=', equals + 1) == std::string::npos && is_number_with_unit(line.substr(equals + 1)))
-    return units_are_not_written;
+  if (line.find('=') < comma) {
+    if (std::string hint = missing_quotes_hint(line); !hint.empty()) return hint;
+  }
   if (location.column < 2 || comma + 1 >= line.size() || line[comma] != ',') return "";
   if (digits.find(line[comma - 1]) == std::string_view::npos || digits.find(line[comma + 1]) == std::string_view::npos)
     return "";
@@ -130,14 +178,19 @@ TomlNode* TomlNode::find(std::string_view name) {
   return const_cast<TomlNode*>(static_cast<const TomlNode*>(this)->find(name));
 }
 
-bool is_number_with_unit(const std::string& text) {
+std::string unit_hint(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(' ');
-  if (begin == std::string::npos || text.find_first_of("+-.0123456789", begin) != begin) return false;
+  if (begin == std::string::npos || text.find_first_of("+-.0123456789", begin) != begin) return "";
   char* end = nullptr;
-  std::strtod(text.c_str() + begin, &end);
+  const double number = std::strtod(text.c_str() + begin, &end);
   const std::size_t unit = text.find_first_not_of(' ', std::size_t(end - text.c_str()));
-  return end != text.c_str() + begin && unit != std::string::npos &&
-         std::isalpha(static_cast<unsigned char>(text[unit])) != 0;
+  if (end == text.c_str() + begin || unit == std::string::npos) return "";
+  if (text[unit] == '%') return fmt::format("; write {:.9g} % as {:.9g}", number, number / 100.0);
+  constexpr std::array<std::string_view, 5> symbols{"µ", "μ", "°", "Ω", "Å"};  // the first is U+00B5, the second U+03BC
+  const std::string_view rest = std::string_view(text).substr(unit);
+  const auto begins_rest = [rest](std::string_view symbol) { return rest.starts_with(symbol); };
+  if (std::isalpha(static_cast<unsigned char>(rest[0])) == 0 && std::ranges::none_of(symbols, begins_rest)) return "";
+  return "; units are not written: give the number alone, in the units of the other values";
 }
 
 TomlNode parse_toml(const std::string& document, const std::string& file) {
@@ -146,7 +199,7 @@ TomlNode parse_toml(const std::string& document, const std::string& file) {
   } catch (const toml::parse_error& problem) {
     const SourceLocation location = location_of(problem.source(), file);
     throw Error(ErrorKind::invalid_input, fmt::format("{}: invalid TOML: {}{}", location.text(), problem.description(),
-                                                      number_hint(document, location)));
+                                                      value_hint(document, location)));
   }
 }
 

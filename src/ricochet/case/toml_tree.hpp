@@ -44,11 +44,8 @@ struct TomlNode {
 /// Parses the right-hand side of an equals sign; nullopt unless it is one TOML value. All nodes get `location`.
 [[nodiscard]] std::optional<TomlNode> parse_toml_value(const std::string& text, const SourceLocation& location);
 
-/// Returns whether a text is a number that a unit follows: "1 ms".
-[[nodiscard]] bool is_number_with_unit(const std::string& text);
-/// Hint for such texts, to be appended to a message.
-inline constexpr const char* units_are_not_written =
-    "; units are not written: give the number alone, in the units of the other values";
+/// Returns a hint to append to a message if a text is a number that a unit ("1 ms") or a percent sign follows, else "".
+[[nodiscard]] std::string unit_hint(const std::string& text);
 
 /// Value as text: texts without quotes, numbers in their shortest exact form, lists as "[1, 2]".
 [[nodiscard]] std::string value_text(const TomlNode& node);

@@ -28,6 +28,21 @@ std::string no_entry(const std::string& path, const std::string& near, const std
                      near.empty() ? otherwise : fmt::format("did you mean \"{}\"?", near));
 }
 
+std::string problem_from(const std::string& path, std::size_t at, const Json& schema);
+
+/// Returns the problem of a path whose part between these positions is not the number of an entry of a list, with an
+/// example that has no problem if there is one.
+std::string no_number(const std::string& path, std::size_t begin, std::size_t end, const Json& entry) {
+  const bool is_negative = path[begin] == '-' && is_digits(path.substr(begin + 1, end - begin - 1), 1);
+  const std::string problem = fmt::format("summary.{} is a list: specify the entry, counted from 0{}",
+                                          path.substr(0, begin - 1), is_negative ? ", not from the end" : "");
+  for (const std::string& rest : {"." + path.substr(begin), path.substr(end)}) {
+    const std::string example = path.substr(0, begin) + "0" + rest;
+    if (problem_from(example, begin + 2, entry).empty()) return fmt::format("{}, as in summary.{}", problem, example);
+  }
+  return problem;
+}
+
 /// Follows a path from the part at `at`, which `schema` outlines.
 std::string problem_from(const std::string& path, std::size_t at, const Json& schema) {
   if (at > path.size())
@@ -45,8 +60,7 @@ std::string problem_from(const std::string& path, std::size_t at, const Json& sc
   }
   if (schema.contains("items")) {
     if (is_digits(name, 1, 9)) return problem_from(path, end + 1, schema.at("items"));
-    return fmt::format("summary.{} is a list: specify the entry, counted from 0, as in summary.{}0.{}",
-                       done.substr(0, at - 1), done, path.substr(at));
+    return no_number(path, at, end, schema.at("items"));
   }
   if (!schema.contains("additionalProperties"))
     return no_entry(path, "", fmt::format("{} has no entries", done.substr(0, at - 1)));

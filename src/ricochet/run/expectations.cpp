@@ -85,10 +85,9 @@ ExpectationResult described(const ExpectSection& expect) {
 
 /// Returns the reason why a quantity cannot be evaluated in a run of this case, or "".
 std::string problem_of(const Case& input, const Quantity& quantity, const std::vector<std::string>& columns) {
-  const bool is_column = quantity.kind != Quantity::Kind::summary_value;
-  if (is_column && std::ranges::find(columns, quantity.name) == columns.end())
-    return no_such_column(input, quantity.name, columns);
-  return impossible_in(input.time, quantity);
+  const std::string problem = impossible_in(input.time, quantity), column = required_column(quantity);
+  if (!problem.empty() || column.empty() || std::ranges::count(columns, column) > 0) return problem;
+  return no_such_column(input, column, columns);
 }
 
 }  // namespace

@@ -183,6 +183,14 @@ std::string impossible_in(const TimeSection& time, const Quantity& quantity) {
   return impossible_row(time, quantity);
 }
 
+std::string required_column(const Quantity& quantity) {
+  if (quantity.kind != Quantity::Kind::summary_value) return quantity.name;
+  const std::string extrema = "extrema.";
+  const std::size_t end = quantity.name.rfind('.');
+  if (!quantity.name.starts_with(extrema) || end <= extrema.size()) return "";
+  return quantity.name.substr(extrema.size(), end - extrema.size());
+}
+
 std::string no_such_column(const std::string& name, const std::vector<std::string>& names) {
   const std::string near = nearest_name(name, names), own = name.substr(0, name.find('.') + 1);
   std::string hint = near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);

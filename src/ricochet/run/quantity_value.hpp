@@ -19,6 +19,9 @@ namespace ricochet {
 /// not have, a time outside the run or a row beyond the last; "" if it may have it.
 [[nodiscard]] std::string impossible_in(const TimeSection& time, const Quantity& quantity);
 
+/// Returns the column of history.csv from which a quantity follows, also that of summary.extrema.COLUMN.…; "" if none.
+[[nodiscard]] std::string required_column(const Quantity& quantity);
+
 /// Returns the message that history.csv has no column of this name, with the one that may be meant.
 [[nodiscard]] std::string no_such_column(const std::string& name, const std::vector<std::string>& names);
 

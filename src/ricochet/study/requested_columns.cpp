@@ -31,16 +31,23 @@ struct RequestedColumn {
   throw Error(ErrorKind::usage, fmt::format("{}: {}", request, reason));
 }
 
-/// Refuses a quantity that no run has, whatever its columns.
+/// Refuses a quantity that no run has, whatever its columns. The reason is that of the run with the widest bounds.
 void require_possible(const Study& study, const std::string& request, const Quantity& quantity) {
   std::string reason;
+  double widest = 0.0;
   for (const StudyRun& run : study.runs) {
+    std::optional<TimeSection> time;
     try {
-      reason = impossible_in(read_case(study.plan.case_path, run.planned.settings).time, quantity);
+      time = read_case(study.plan.case_path, run.planned.settings).time;
     } catch (const Error&) {  // its row reports the error
       continue;
     }
-    if (reason.empty()) return;
+    const std::string found = impossible_in(*time, quantity);
+    if (found.empty()) return;
+    const bool is_row = quantity.kind == Quantity::Kind::history_value;
+    const double extent = is_row ? double(step_count(*time)) : run_end(*time);
+    if (extent > widest) reason = found;
+    widest = std::max(widest, extent);
   }
   if (!reason.empty()) refuse(request, reason);
 }
@@ -51,7 +58,7 @@ std::vector<RequestedColumn> columns_in(const Study& study) {
     const Quantity quantity = parse_quantity(text);
     const std::string request = option + " " + text;
     require_possible(study, request, quantity);
-    if (quantity.kind != Quantity::Kind::summary_value) columns.push_back({request, quantity.name});
+    if (const std::string column = required_column(quantity); !column.empty()) columns.push_back({request, column});
   };
   for (const std::string& text : study.questions.quantities) add("--quantity", text);
   for (const auto& [text, value] : study.questions.exact) add("--exact", text);

@@ -85,6 +85,17 @@ TEST(SummaryFile, KnowsThePathsOfNumbers) {
   EXPECT_EQ(summary_path_problem("steps.0"), no_entry + "\"steps.0\"; steps has no entries");
   EXPECT_EQ(summary_path_problem("impacts.restitution"),
             "summary.impacts is a list: specify the entry, counted from 0, as in summary.impacts.0.restitution");
+  // The example is a path that exists, whether the number is missing or something stands in its place.
+  const std::string bodies = "summary.bodies is a list: specify the entry, counted from 0";
+  EXPECT_EQ(summary_path_problem("bodies.cube.mass"), bodies + ", as in summary.bodies.0.mass");
+  EXPECT_EQ(summary_path_problem("bodies.cube"), bodies);
+  EXPECT_EQ(summary_path_problem("bodies."), bodies);
+  EXPECT_EQ(summary_path_problem("impacts.0.velocity_after.x"),
+            "summary.impacts.0.velocity_after is a list: specify the entry, counted from 0, as in "
+            "summary.impacts.0.velocity_after.0");
+  EXPECT_EQ(summary_path_problem("impacts.-1.restitution"),
+            "summary.impacts is a list: specify the entry, counted from 0, not from the end, as in "
+            "summary.impacts.0.restitution");
   for (const char* path : {"impacts", "impacts.0", "title", "extrema"})
     EXPECT_EQ(summary_path_problem(path), "summary." + std::string(path) + " is not a number");
 }

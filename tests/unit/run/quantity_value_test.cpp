@@ -106,6 +106,14 @@ TEST(QuantityValue, SaysWhatThereIsNot) {
       "history.csv has no column \"crate.displacement_x\"; those of \"crate\" are \"crate.force\" and "
       "\"crate.displacement_average_x\"");
   EXPECT_EQ(no_such_column("rocket.fuel", {"time", "crate.force"}), "history.csv has no column \"rocket.fuel\"");
+  for (const auto& [quantity, column] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"history.time[0]", "time"},
+                                                                  {"max(history.low.gap)", "low.gap"},
+                                                                  {"summary.extrema.low.gap.maximum", "low.gap"},
+                                                                  {"summary.extrema.time.last", "time"},
+                                                                  {"summary.extrema.time", ""},
+                                                                  {"summary.steps", ""}})
+    EXPECT_EQ(required_column(parse_quantity(quantity)), column) << quantity;
   EXPECT_EQ(problem("history.force[6]"), "history.force[6]: history.csv has 6 rows");
   for (const std::string quantity : {"history.force(t=0.6)", "max(history.force, 0.4, 0.6)"})
     EXPECT_EQ(problem(quantity),
