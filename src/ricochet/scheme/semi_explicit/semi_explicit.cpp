@@ -94,38 +94,38 @@ class SemiExplicit final : public Scheme {
     } else {
       const StageSolution* const solution = solve_contact(problem, state, stages);
       motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
-      problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory, state.displacement.size()));
-      motion_.accelerate(state.memory.at(force_memory, state.displacement.size()), load(problem), h, state);
+      problem.internal_force->evaluate(state.displacement, force_of(state));
+      motion_.accelerate(force_of(state), load(problem), h, state);
       if (solution != nullptr) StepEquations::store_contact(stages.stage(0), *solution, h, state);
     }
-    supports_.advance(problem, motion_.mass(), motion_.damping(),
-                      state.memory.at(force_memory, state.displacement.size()), load(problem), increment, h, state);
+    supports_.advance(problem, motion_.mass(), motion_.damping(), force_of(state), load(problem), increment, h, state);
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
     if (problem.loads.varies()) state.forces.varying_load = varying_;
     if (problem.has_damping()) state.forces.damping_force = motion_.damping().cwiseProduct(state.velocity);
     if (!tracked_) return;
     nonlinear_contact_.renew_where_slow(problem, state, stages);
-    if (!at_any_step_)
-      tracked_->track(problem, h, state.memory.at(force_memory, state.displacement.size()), energy_, state);
+    if (!at_any_step_) tracked_->track(problem, h, force_of(state), energy_, state);
   }
 
   [[nodiscard]] LastStep last_step() const override {
     return {.corrections = {.integration_error = integration_error_}, .displacement_of_forces = &end_};
   }
 
-  [[nodiscard]] const Vector* internal_force(const State& state) const override {
-    return &state.memory.at(force_memory, state.displacement.size());
-  }
+  [[nodiscard]] const Vector* internal_force(const State& state) const override { return &force_of(state); }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem&, const State& state) const override {
     return -0.125 * step() * step() * state.acceleration.dot(motion_.mass().cwiseProduct(state.acceleration));
   }
 
  private:
+  /// Returns the internal force at the displacement of the state.
+  static Vector& force_of(State& state) { return state.memory.at(force_memory, state.displacement.size()); }
+  static const Vector& force_of(const State& state) { return state.memory.at(force_memory, state.displacement.size()); }
+
   /// Returns null without contact dofs.
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     if (!problem.has_contact_dofs()) return nullptr;
-    contact_.require(problem, state, state.memory.at(force_memory, state.displacement.size()), load(problem),
+    contact_.require(problem, state, force_of(state), load(problem),
                      state.memory.at(supported_next, problem.supports.size()), step(), stages.stage(0));
     return &stages.solve(0);
   }
@@ -135,7 +135,7 @@ class SemiExplicit final : public Scheme {
   void advance_finite(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
     const double h = step();
     if (!at_any_step_) tracked_->require_stable(problem, h, state);
-    Vector& force = state.memory.at(force_memory, state.displacement.size());
+    Vector& force = force_of(state);
     if (energy_step_ != state.step) energy_ = problem.internal_force->energy(state.displacement);
     energy_step_ = -1;
     const StageSolution* solution = nullptr;

@@ -101,7 +101,7 @@ void TrackedCriticalStep::store(double critical, State& state) {
 std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& problem, const State& state) const {
   const Vector& mode = state.memory.at(critical_mode, state.displacement.size());
   Index at = 0;
-  if (mode.size() == 0 || mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
+  if (mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
   const Index node = at / problem.dimension;
   const Vector where =
       problem.nodes.col(node) + state.displacement.segment(node * problem.dimension, problem.dimension);
