@@ -62,8 +62,7 @@ void print_methods(const std::vector<Run>& runs, int width) {
   if (any_force)
     fmt::print(
         "  variation of contact force: the total variation of contact_force_* or pair_force.*, whichever varies most, "
-        "in "
-        "the unit of force of the case (in plane cases per thickness)\n");
+        "in the unit of force of the case (in plane cases per thickness)\n");
   if (any_skips)
     fmt::print(
         "  ≥ the history has no row for some steps: a force that alternates from step to step varies more "

@@ -56,15 +56,13 @@ double RunSummary::delay_of(const std::string& column) const {
   // Names of probes and bodies may be any; what follows them is the quantity.
   const std::size_t dot = column.rfind('.');
   const std::string quantity = dot == std::string::npos ? column : column.substr(dot);
-  const auto begins = [](const std::string& text) {
-    return [&text](const char* name) { return text.starts_with(name); };
-  };
+  const auto begins_quantity = [&quantity](const char* name) { return quantity.starts_with(name); };
   constexpr std::array momenta{"momentum_", "angular_momentum_"};
-  if (quantity.ends_with("_energy") || quantity == "load_potential" || std::ranges::any_of(momenta, begins(quantity)) ||
+  if (quantity.ends_with("_energy") || quantity == "load_potential" || std::ranges::any_of(momenta, begins_quantity) ||
       column.starts_with("momentum."))
     return energy_instant * step;
   constexpr std::array forces{"contact_force_", ".contact_force_", ".reaction_", ".pressure", ".nominal_pressure"};
-  const bool is_force = column.starts_with("pair_force.") || std::ranges::any_of(forces, begins(quantity));
+  const bool is_force = column.starts_with("pair_force.") || std::ranges::any_of(forces, begins_quantity);
   return is_force ? force_instant * step : 0.0;
 }
 

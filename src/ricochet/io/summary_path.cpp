@@ -68,9 +68,7 @@ std::string problem_from(const std::string& path, std::size_t at, const Json& sc
   std::string problem = problem_from(path, end + 1, schema.at("additionalProperties"));
   for (std::size_t dot = end; !problem.empty() && dot < path.size();) {
     dot = std::min(path.find('.', dot + 1), path.size());
-    const std::string other = problem_from(path, dot + 1, schema.at("additionalProperties"));
-    if (dot == path.size()) break;
-    problem = other;
+    if (dot < path.size()) problem = problem_from(path, dot + 1, schema.at("additionalProperties"));
   }
   return problem;
 }
