@@ -1,5 +1,5 @@
 """The recipes of packaging/ for other packagers are well-formed and name all libraries that CMake searches for. Their
-tools are not available here: no recipe is built."""
+tools are not available here: no recipe is built. They, the citation and the pages name the version of the project."""
 
 import re
 import subprocess
@@ -80,6 +80,17 @@ class Recipes(TestCase):
         known = set(re.findall(r"option\((\w+)", "".join((SOURCE / path).read_text(encoding="utf-8") for path in ("CMakeLists.txt", "cmake/Packages.cmake"))))
         for name, _ in recipe().cmake_args():
             self.assertTrue(name in known or name.startswith("CMAKE_"), name)
+
+    def test_the_citation_names_the_version(self):
+        self.assertEqual(yaml.safe_load((SOURCE / "CITATION.cff").read_text(encoding="utf-8"))["version"], version())
+
+    def test_pages_require_the_version(self):
+        """An installed package accepts only requests for its own minor version (cmake/Install.cmake)."""
+        pages = [SOURCE / "README.md", *(SOURCE / "docs").rglob("*.md")]
+        required = [(page.name, number) for page in pages
+                    for number in re.findall(r"find_package\(ricochet ([\d.]+)", page.read_text(encoding="utf-8"))]
+        self.assertGreaterEqual(len(required), 2)
+        self.assertEqual({number for _, number in required}, {version().rpartition(".")[0]}, required)
 
     def test_container(self):
         """The packages installed besides are those that the package recommends or suggests (cmake/Packages.cmake)."""
