@@ -46,8 +46,9 @@ void require_possible(const Study& study, const std::string& request, const Quan
     if (found.empty()) return;
     const bool is_row = quantity.kind == Quantity::Kind::history_value;
     const double extent = is_row ? double(step_count(*time)) : run_end(*time);
-    if (extent > widest) reason = found;
-    widest = std::max(widest, extent);
+    if (extent <= widest) continue;
+    widest = extent;
+    reason = found;
   }
   if (!reason.empty()) refuse(request, reason);
 }
