@@ -42,7 +42,7 @@ std::vector<Method> methods() {
 Vector slip_of(CaseRun& run, const Vector& before, const Vector& ahead_before) {
   const State& state = run.state();
   if (run.input().time.scheme != "klr-conserving") return state.displacement - before;
-  return 0.5 * (ahead_before + state.memory.at("increment_ahead", state.displacement.size()));
+  return 0.5 * (ahead_before + state.dof_memory("increment_ahead"));
 }
 
 /// Largest violations of the law, relative to the largest reaction and slip so far, and the statuses that occurred.
@@ -105,9 +105,7 @@ void expect_law(const ThrownBody& body, const Method& method, const std::string&
   Seen seen;
   Vector before = run.state().displacement;
   const auto ahead = [&] {
-    return run.state().memory.count("increment_ahead") > 0
-               ? run.state().memory.at("increment_ahead", run.state().displacement.size())
-               : Vector();
+    return run.state().memory.count("increment_ahead") > 0 ? run.state().dof_memory("increment_ahead") : Vector();
   };
   Vector ahead_before = ahead();
   run.run(
@@ -263,10 +261,10 @@ TEST(FrictionEnergy, KlrLosesWhatFrictionTakesAndNeverGains) {
       };
       double before = energy(), worst = 0.0, gain = 0.0, total = 0.0;
       const double first = before;
-      Vector ahead = run.state().memory.at("increment_ahead", run.state().displacement.size());
+      Vector ahead = run.state().dof_memory("increment_ahead");
       run.run(
           [&] {
-            const Vector& next = run.state().memory.at("increment_ahead", run.state().displacement.size());
+            const Vector& next = run.state().dof_memory("increment_ahead");
             const Vector slip = run.problem().contact.rows->tangential_trace * (0.5 * (ahead + next));
             const double friction = -run.state().forces.tangential_reaction.dot(slip);
             const double now = energy();
@@ -309,8 +307,7 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
       const bool klr = method.scheme.find("klr") != std::string::npos;
       const double h = run.input().time.step;
       const auto momentum = [&]() -> Vector {
-        const Vector v = klr ? Vector(run.state().memory.at("increment_ahead", run.state().displacement.size()) / h)
-                             : run.state().velocity;
+        const Vector v = klr ? Vector(run.state().dof_memory("increment_ahead") / h) : run.state().velocity;
         return resultants(problem, problem.mass.to_sparse() * v);
       };
       const auto force = [&] {

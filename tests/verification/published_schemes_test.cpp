@@ -175,9 +175,9 @@ TEST(PublishedScheme, AlphaSchemesDissipateInClosedForm) {
       const double h = run.scheme().step(), factor = 0.5 * h * h * (beta - 0.5 * gamma);
       const SparseMatrix m = run.problem().mass.to_sparse();
       const SparseMatrix& k = run.problem().internal_force->tangent();
-      Vector before = run.state().memory.at("algorithmic_acceleration", run.state().displacement.size());
+      Vector before = run.state().dof_memory("algorithmic_acceleration");
       expect_identity(run, name, [&](const StepEnd& a, const StepEnd& b) {
-        const Vector now = run.state().memory.at("algorithmic_acceleration", run.state().displacement.size());
+        const Vector now = run.state().dof_memory("algorithmic_acceleration");
         const Vector du = b.displacement - a.displacement, da = now - before, mda = m * da;
         const double algorithmic = factor * (now.dot(m * now) - before.dot(m * before));
         before = now;
@@ -200,11 +200,11 @@ TEST(PublishedScheme, NonsmoothGeneralizedAlphaDissipatesInClosedForm) {
       const double h = run.scheme().step(), factor = 0.5 * h * h * (beta - 0.5 * gamma);
       const SparseMatrix m = run.problem().mass.to_sparse();
       const SparseMatrix& k = run.problem().internal_force->tangent();
-      Vector before = run.state().memory.at("algorithmic_acceleration", run.state().displacement.size());
+      Vector before = run.state().dof_memory("algorithmic_acceleration");
       double deepest = 0.0;
       expect_identity(run, name, [&](const StepEnd& a, const StepEnd& b) {
         deepest = std::max(deepest, -b.gap.minCoeff());
-        const Vector now = run.state().memory.at("algorithmic_acceleration", run.state().displacement.size());
+        const Vector now = run.state().dof_memory("algorithmic_acceleration");
         const Vector du = b.displacement - a.displacement, da = now - before, mda = m * da;
         const Vector mean = (1.0 - gamma) * before + gamma * now;
         const Vector q = du - h * a.velocity - h * h * ((0.5 - beta) * before + beta * now);

@@ -44,6 +44,10 @@ struct State {
   /// contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;
   SchemeMemory memory;
+
+  /// Vector of the memory with one value per dof.
+  [[nodiscard]] Vector& dof_memory(const std::string& name) { return memory.at(name, displacement.size()); }
+  [[nodiscard]] const Vector& dof_memory(const std::string& name) const { return memory.at(name, displacement.size()); }
 };
 
 /// Saves and loads a state of this problem. Throws Error(invalid_input) if sizes do not match.

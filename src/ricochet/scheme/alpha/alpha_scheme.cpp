@@ -22,7 +22,7 @@ void AlphaScheme::start(const SemidiscreteProblem&, State& state, StageSolve&) {
 
 void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   const double h = step(), end = state.time + h;
-  Vector& before = state.memory.at(algorithmic_acceleration, state.displacement.size());
+  Vector& before = state.dof_memory(algorithmic_acceleration);
   error_.begin(problem, state);
   shift_ = (weights_.inertia_weight * before - weights_.force_weight * state.acceleration) /
            ((1.0 - weights_.force_weight) * weights_.alpha);  // c/α
@@ -75,13 +75,12 @@ void AlphaScheme::compute_dissipation(const SemidiscreteProblem& problem, const 
 double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
   return weights_.energy_factor == 0.0
              ? 0.0
-             : weights_.energy_factor *
-                   problem.mass.quadratic_form(state.memory.at(algorithmic_acceleration, state.displacement.size()));
+             : weights_.energy_factor * problem.mass.quadratic_form(state.dof_memory(algorithmic_acceleration));
 }
 
 bool AlphaScheme::momentum_acceleration(const State& state, Vector& acceleration) const {
   if (weights_.force_weight == 0.5) return false;
-  acceleration = (0.5 - weights_.force_weight) * state.memory.at(algorithmic_acceleration, state.displacement.size());
+  acceleration = (0.5 - weights_.force_weight) * state.dof_memory(algorithmic_acceleration);
   return true;
 }
 

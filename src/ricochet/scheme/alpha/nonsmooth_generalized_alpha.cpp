@@ -29,11 +29,10 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     return {{weights_.alpha, 1.0, 0.0}, {1.0, 0.0, 0.0}};
   }
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
-    return weights_.energy_factor *
-           problem.mass.quadratic_form(state.memory.at(algorithmic_acceleration, state.displacement.size()));
+    return weights_.energy_factor * problem.mass.quadratic_form(state.dof_memory(algorithmic_acceleration));
   }
   bool momentum_acceleration(const State& state, Vector& acceleration) const override {
-    acceleration = (0.5 - weights_.force_weight) * state.memory.at(algorithmic_acceleration, state.displacement.size());
+    acceleration = (0.5 - weights_.force_weight) * state.dof_memory(algorithmic_acceleration);
     return true;
   }
   [[nodiscard]] LastStep last_step() const override { return {.corrections = corrections_}; }
@@ -56,13 +55,12 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     const StageSolution& impact = contact_problems_.solve_velocities(problem, state, h, weights_, stages);
     // Λ/h does work on this increment.
     increment = (0.5 * h) * (state.velocity + contact_problems_.predicted_velocity + impact.increment);
-    compute_corrections(problem, state.time, impact, increment,
-                        state.memory.at(smooth_varying_load, state.displacement.size()));
+    compute_corrections(problem, state.time, impact, increment, state.dof_memory(smooth_varying_load));
     store_forces(problem, stages, impact, state);
     state.displacement += contact_problems_.displacement_increment;
     state.velocity = contact_problems_.predicted_velocity + impact.increment;
     state.acceleration = contact_problems_.acceleration_without_contact;
-    state.memory.at(algorithmic_acceleration, state.displacement.size()) = contact_problems_.algorithmic_end;
+    state.dof_memory(algorithmic_acceleration) = contact_problems_.algorithmic_end;
     state.memory.at(smooth_support_reaction, problem.supports.size()) =
         contact_problems_.support_reaction_without_contact;
   }

@@ -32,7 +32,7 @@ void NonsmoothStages::solve_positions(const SemidiscreteProblem& problem, const 
                                       const AlphaWeights& weights, StageSolve& stages) {
   const double h = step, end = state.time + h;
   acceleration_without_contact = state.acceleration;
-  algorithmic_start = state.memory.at(algorithmic_acceleration, state.displacement.size());
+  algorithmic_start = state.dof_memory(algorithmic_acceleration);
   support_reaction_without_contact = state.memory.at(smooth_support_reaction, problem.supports.size());
   shift_ = (weights.inertia_weight * algorithmic_start - weights.force_weight * acceleration_without_contact) /
            ((1.0 - weights.force_weight) * weights.alpha);

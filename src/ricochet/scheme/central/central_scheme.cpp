@@ -35,8 +35,8 @@ void CentralScheme::start(const SemidiscreteProblem& problem, State& state, Stag
 
 void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   const double h = step(), time = state.time + h;
-  Vector& ahead = state.memory.at(increment_ahead, state.displacement.size());  // Uⁿ − Uⁿ⁻¹
-  now_ = state.displacement + ahead;                                            // Uⁿ; the state is at n−1
+  Vector& ahead = state.dof_memory(increment_ahead);  // Uⁿ − Uⁿ⁻¹
+  now_ = state.displacement + ahead;                  // Uⁿ; the state is at n−1
   velocity_ = ahead / h;
   Stage& stage = stages.stage(0);
   equations_.balance(problem, time, now_, velocity_, stage);  // Vⁿ = (Uⁿ−Uⁿ⁻¹)/h + δ/2h
@@ -57,18 +57,18 @@ void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, St
 /// Changes the coming increment, too: the velocity is that of the step ahead.
 void CentralScheme::change_velocity(State& state, const Vector& change) const {
   state.velocity += change;
-  state.memory.at(increment_ahead, state.displacement.size()) += step() * change;
+  state.dof_memory(increment_ahead) += step() * change;
 }
 
 void CentralScheme::energy_state(const State& state, Vector& displacement, Vector& velocity) const {
-  const Vector& ahead = state.memory.at(increment_ahead, state.displacement.size());
+  const Vector& ahead = state.dof_memory(increment_ahead);
   displacement = state.displacement + 0.5 * ahead;
   velocity = ahead / step();
 }
 
 double CentralScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
   if (stiffness_ == 0.25) return 0.0;
-  const Vector& ahead = state.memory.at(increment_ahead, state.displacement.size());
+  const Vector& ahead = state.dof_memory(increment_ahead);
   return 0.5 * (stiffness_ - 0.25) * elastic_product(problem, ahead, ahead, force_);
 }
 

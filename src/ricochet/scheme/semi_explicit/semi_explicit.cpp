@@ -119,8 +119,8 @@ class SemiExplicit final : public Scheme {
 
  private:
   /// Returns the internal force at the displacement of the state.
-  static Vector& force_of(State& state) { return state.memory.at(force_memory, state.displacement.size()); }
-  static const Vector& force_of(const State& state) { return state.memory.at(force_memory, state.displacement.size()); }
+  static Vector& force_of(State& state) { return state.dof_memory(force_memory); }
+  static const Vector& force_of(const State& state) { return state.dof_memory(force_memory); }
 
   /// Returns null without contact dofs.
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {

@@ -99,7 +99,7 @@ void TrackedCriticalStep::store(double critical, State& state) {
 }
 
 std::string TrackedCriticalStep::location_text(const SemidiscreteProblem& problem, const State& state) const {
-  const Vector& mode = state.memory.at(critical_mode, state.displacement.size());
+  const Vector& mode = state.dof_memory(critical_mode);
   Index at = 0;
   if (mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
   const Index node = at / problem.dimension;
@@ -125,7 +125,7 @@ void TrackedCriticalStep::require_stable(const SemidiscreteProblem& problem, dou
 
 /// Largest relative change of a distance of neighbours since the last check, weighted.
 double TrackedCriticalStep::change_since(const SemidiscreteProblem& problem, const State& state) const {
-  const Vector& before = state.memory.at(critical_displacement, state.displacement.size());
+  const Vector& before = state.dof_memory(critical_displacement);
   const double* const u = state.displacement.data();
   const double* const u0 = before.data();
   const double* const x = problem.nodes.data();
@@ -181,7 +181,7 @@ double TrackedCriticalStep::find(const SemidiscreteProblem& problem, const Vecto
     problem.internal_force->evaluate(displacement_, force_);
     y = inverse_root_.cwiseProduct(force_ - force) / scale;
   };
-  Vector& mode = state.memory.at(critical_mode, state.displacement.size());
+  Vector& mode = state.dof_memory(critical_mode);
   // Each check has another random part: the next ones find what one misses.
   std::mt19937_64 generator(static_cast<std::uint64_t>(state.step));
   std::normal_distribution<double> normal;
