@@ -12,7 +12,7 @@ Mesh.MeshSizeMin = 0.8;
 Physical Surface("ring") = {1};
 Physical Curve("skin") = {1};
 """
-# Rubber that is squeezed between two plates, by two thousandths of its height in a step.
+# Rubber that is squeezed between two plates, by three hundredths of its height in a step.
 RING = """[mesh]
 file = "ring.geo"
 degree = 2
@@ -31,7 +31,7 @@ normal = [0, 1]
 type = "plane"
 point = [0, 5.0]
 normal = [0, -1]
-motion = ["0", "-20*t"]
+motion = ["0", "-40*t"]
 [[contact]]
 group = "skin"
 obstacle = "bottom"

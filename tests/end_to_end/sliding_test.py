@@ -136,7 +136,8 @@ def material(group, law="neo-hookean", young=1000.0):
 
 class Sliding(TestCase):
     def history(self, text, name="case.toml"):
-        return History(self.simulate(self.write(name, text)) / "history.csv")
+        """Runs to rounding: iterations leave unsettled gaps, and the work of changing facets, of the size of their tolerance."""
+        return History(self.simulate(self.write(name, text), values={"solver.newton_tolerance": 1e-13}) / "history.csv")
 
     def closes(self, history):
         """Checks that the account closes, without energy from contact or from facets that change."""

@@ -24,6 +24,7 @@ class LostStages final : public StageSolve {
     if (number == 1) throw Error(ErrorKind::not_converged, "W has non-finite entries");
     return solution_[0];
   }
+  [[nodiscard]] double newton_tolerance() const override { return 1e-9; }
   void rotate_operators(const Vector&) override {}
   void renew_operators(const Vector&, const Vector&) override {}
 

@@ -19,9 +19,6 @@ class Stiffening final : public InternalForce {
     linear_.evaluate(displacement, force);
     force *= factor(displacement);
   }
-  void strain_force(const Vector&, const Vector& increment, Vector& force) const override {
-    linear_.evaluate(increment, force);
-  }
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override {
     return factor(displacement) * linear_.energy(displacement);

@@ -4,7 +4,7 @@
 
 #include "support/case_run.hpp"
 
-/// @file The velocity correction balances the energy of a step if no stress does.
+/// @file Velocity corrections make momenta and energy of a step exact.
 namespace ricochet::test_support::velocity_correction_test {
 
 struct Kind {
@@ -61,6 +61,7 @@ TEST(VelocityCorrection, ChangesTheEnergyAndNeitherMomentaNorSupports) {
       for (const Index dof : problem.supports.dofs()) velocity[dof] = displacement[dof] = 0.0;
       const Vector place = problem.nodes.reshaped() + displacement;
       const double energy = 0.5 * problem.mass.quadratic_form(velocity);
+      correction.start(displacement);
       for (const double change : {1e-3 * energy, -1e-3 * energy, 1e-14 * energy}) {
         ASSERT_TRUE(correction.find(velocity, displacement, change)) << kind.name << mass;
         const Vector& added = correction.value();
@@ -86,7 +87,51 @@ TEST(VelocityCorrection, TakesNothingOfRigidMotion) {
   for (Index node = 0; node < run.problem().nodes.cols(); ++node)
     velocity.segment<2>(2 * node) << 3.0 - 2.0 * run.problem().nodes(1, node), 2.0 * run.problem().nodes(0, node);
   const double energy = 0.5 * run.problem().mass.quadratic_form(velocity);
-  EXPECT_FALSE(correction.find(velocity, Vector::Zero(velocity.size()), -1e-9 * energy));
+  const Vector undeformed = Vector::Zero(velocity.size());
+  correction.start(undeformed);
+  EXPECT_FALSE(correction.find(velocity, undeformed, -1e-9 * energy));
+}
+
+/// The force acts at the middle of the step, and the velocity at its end.
+TEST(VelocityCorrection, GivesBodiesTheMomentaOfAResidual) {
+  constexpr double step = 0.3;
+  const std::string left = "[[support]]\ngroup = \"left\"\ncomponents = [\"x\"]\n";
+  for (const Kind& kind : {Kind{"plane", "strain", ""}, Kind{"held", "strain", left},
+                           Kind{"ring", "axisymmetric", left}, Kind{"space", "strain", ""}}) {
+    for (const std::string mass : {"equivalent", "consistent"}) {
+      const CaseRun run = run_of(kind, mass);
+      const SemidiscreteProblem& problem = run.problem();
+      const BodyRotations bodies(problem);
+      VelocityCorrection correction(problem, bodies);
+      srand(9);
+      const Index count = problem.dof_count();
+      const Vector end = 0.1 * Vector::Random(count), middle = 0.1 * Vector::Random(count);
+      Vector residual = Vector::Random(count);
+      for (const Index dof : problem.supports.dofs()) residual[dof] = 0.0;
+      correction.start(end);
+      Vector reaction = Vector::Zero(problem.supports.size());
+      const Vector added = correction.of_momenta(residual, middle, step, reaction);
+      // Moments are about the same point in space.
+      Eigen::Matrix<double, 6, 1> expected = Eigen::Matrix<double, 6, 1>::Zero();
+      for (Index node = 0; node < problem.nodes.cols(); ++node) {
+        Eigen::Vector3d at = Eigen::Vector3d::Zero(), force = at;
+        const Index d = problem.dimension;
+        at.head(d) = problem.nodes.col(node) + middle.segment(node * d, d);
+        force.head(d) = step * residual.segment(node * d, d);
+        // Supports take over what the body cannot.
+        for (Index i = 0; i < reaction.size(); ++i) {
+          const Index dof = problem.supports.dofs()[std::size_t(i)];
+          if (dof / d == node) force[dof % d] += step * reaction[i];
+        }
+        expected.head(3) += force;
+        expected.tail(3) += at.cross(force);
+      }
+      if (problem.axisymmetric) expected[0] = expected[5] = 0.0;
+      const auto found = momenta(problem, problem.nodes.reshaped() + end, added);
+      EXPECT_LT((found - expected).norm(), 1e-13 * expected.norm()) << kind.name << mass;
+      for (const Index dof : problem.supports.dofs()) EXPECT_EQ(added[dof], 0.0);
+    }
+  }
 }
 
 }  // namespace ricochet::test_support::velocity_correction_test

@@ -44,6 +44,14 @@ LeastNormSolver::LeastNormSolver(const Matrix& matrix, double threshold) : facto
 
 Vector LeastNormSolver::solve(const Vector& right) const { return factor_.solve(right); }
 
+SixLeastNormSolver::SixLeastNormSolver(const SixMatrix& matrix, double threshold)
+    : factor_(matrix.rows(), matrix.cols()) {
+  factor_.setThreshold(threshold);
+  factor_.compute(matrix);
+}
+
+SixVector SixLeastNormSolver::solve(const SixVector& right) const { return factor_.solve(right); }
+
 Matrix upper_of_qr(const Matrix& matrix) {
   return Eigen::HouseholderQR<Matrix>(matrix).matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
 }

@@ -76,6 +76,19 @@ class LeastNormSolver {
   Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
 };
 
+/// Least-squares solution like that of LeastNormSolver for at most six equations and unknowns, without memory from the
+/// heap.
+using SixMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using SixVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+class SixLeastNormSolver {
+ public:
+  explicit SixLeastNormSolver(const SixMatrix& matrix, double threshold);
+  [[nodiscard]] SixVector solve(const SixVector& right) const;
+
+ private:
+  Eigen::CompleteOrthogonalDecomposition<SixMatrix> factor_;
+};
+
 /// Returns R of A = Q R, square; A has at least as many rows as columns.
 [[nodiscard]] Matrix upper_of_qr(const Matrix& matrix);
 

@@ -195,6 +195,7 @@ struct CheckSection {
 struct SolverSection {
   std::string method = "auto";
   double tolerance = 1e-10;
+  double newton_tolerance = 1e-8;
   std::optional<double> memory;  ///< GB
   std::string preconditioner = "auto";
   std::string contact_points = "near";

@@ -11,7 +11,7 @@ namespace ricochet {
 
 /// Input and output of all packs.
 struct ElasticCells::PackNumbers {
-  std::vector<double> displacement, increment, force, strain_force;
+  std::vector<double> displacement, increment, force;
   std::vector<double> end, at;  ///< for viscoelastic branches only
 };
 
@@ -27,7 +27,7 @@ struct ElasticCells::Blocks {
     for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
     numbers.displacement = packs.template storage<d>();
     if (graph == nullptr) return;  // energies only, neither forces nor branches
-    numbers.increment = numbers.force = numbers.strain_force = numbers.displacement;
+    numbers.increment = numbers.force = numbers.displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
     if (std::ranges::any_of(body.materials, relaxes)) numbers.end = numbers.at = numbers.displacement;
   }

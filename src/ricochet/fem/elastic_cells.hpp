@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/fem/node_graph.hpp"
+#include "ricochet/fem/strain_path.hpp"
 #include "ricochet/fem/stress.hpp"
 
 /// @file Elastic energy of a body, W(U) = Σ over cells ∫ W(E) over the undeformed cell, and its derivatives, for every
@@ -29,7 +30,8 @@ struct InvertedCell {
 /// Input of the viscoelastic branches for a step (relaxation.hpp). Displacements are per dof.
 struct BranchStep {
   const Vector& middle;     ///< at which forces act over the step
-  const Vector& increment;  ///< u₁ − u₀, from which Ē follows as in mean_force()
+  const Vector& increment;  ///< u₁ − u⁺, from which Ē follows as in path_force()
+  const Vector& start;      ///< u₀
   const Vector& end;        ///< u₁
   const Vector& internal;   ///< A at the start
   double step;              ///< h
@@ -49,22 +51,17 @@ class ElasticCells {
 
   /// Computes the force per dof. If a cell is inverted the force is meaningless; that cell is returned.
   [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
-  /// Computes the forces at a displacement `middle` of the stress of E + ⅛ (∇Δ)ᵀ∇Δ, Δ = `increment`: half way from u₀
-  /// to u₁, with Δ their difference, this is the strain ½(E₀+E₁), and a rigid motion has none (J. C. Simo, N. Tarnow,
-  /// Z. Angew. Math. Phys. 43 (1992) 757–792).
-  [[nodiscard]] InvertedCell mean_force(const Vector& middle, const Vector& increment, Vector& result) const;
-  /// Computes mean_force() and strain_force() at `middle` in one pass.
-  [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
-                                         Vector& strain_result) const;
+  /// Computes the forces at a displacement `middle` of the mean stress S̄ along the path of the strain from that of
+  /// `middle` − ½ `increment` to that of `middle` + ½ `increment` (strain_path.hpp): their work on the increment is the
+  /// change of the energy, and a rigid motion has none.
+  [[nodiscard]] InvertedCell path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                        Vector& result) const;
+  /// Raises the rules of the cells whose strain changes more than their rule is for. Returns whether any was raised.
+  bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
   /// Tangent, exactly symmetric, on the pattern of the graph. An empty displacement is zero. With a `step` it includes
   /// the tangent of the branches over a step of this length, at zero stress of theirs.
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement, double step = 0.0) const;
-  /// Computes the forces, at a displacement, of the stress 𝔻₀ : (the derivative of E along `increment`), 𝔻₀ the tangent
-  /// at zero strain. Half way, that derivative is the change of E over the increment, and the work on the increment is
-  /// Σ ∫ ΔE : 𝔻₀ : ΔE ≥ 0. Materials with a linear law contribute nothing here.
-  void strain_force(const Vector& displacement, const Vector& increment, Vector& result) const;
-
   /// Computes means over one cell of the Cauchy stress (weighted by the undeformed volume) and of the energy
   /// per undeformed volume, including those of branches. `stress`: 6, in the order of XDMF. `internal`:
   /// empty if no branch has stress.
@@ -102,6 +99,8 @@ class ElasticCells {
   template <int d>
   class StripWork;
   template <int d>
+  class PathWork;
+  template <int d>
   class BranchStrips;
   template <int d, template <int> class Strips, class Work>
   void for_each_part(const Work& work) const;
@@ -109,7 +108,7 @@ class ElasticCells {
   struct PackInput;
   struct PackSum;
   struct PackPart;
-  template <class Work>
+  template <template <int> class Strips, class Work>
   InvertedCell visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
                             const Work& work) const;
   void find_internal_offsets();

@@ -89,10 +89,11 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
       blocks_.packs.template read<d>(part, displacements.step->increment, blocks_.numbers.increment);
       blocks_.packs.template read<d>(part, displacements.step->end, blocks_.numbers.end);
     }
-    if (displacements.displacement != nullptr)
-      blocks_.packs.template read<d>(part, *displacements.displacement, blocks_.numbers.at);
+    const Vector* const other =
+        displacements.displacement != nullptr ? displacements.displacement : &displacements.step->start;
+    blocks_.packs.template read<d>(part, *other, blocks_.numbers.at);
   }
-  /// Computes E₀ from the gradient of u₁ minus that of the increment; or E at the displacement if no E₀ is needed.
+  /// Computes the strains of a step, and E₀ or E at the displacement.
   void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchDisplacements& displacements) {
     const Index count = strip.points();
     has_step_ = displacements.step != nullptr;
@@ -104,12 +105,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
       find_gradients(strip, blocks_.numbers.end.data() + begin, ends_.data());
       static_cast<void>(find_strains<d>(count, false, ends_.data(), nullptr, end_.data()));
     }
-    if (has_displacement_) {
-      find_gradients(strip, blocks_.numbers.at.data() + begin, others_.data());
-    } else {
-      const auto size = std::size_t(count * gradient_components<d> * strip.block.width);
-      for (std::size_t k = 0; k < size; ++k) others_[k] = ends_[k] - others_[k];
-    }
+    find_gradients(strip, blocks_.numbers.at.data() + begin, others_.data());
     static_cast<void>(find_strains<d>(count, false, others_.data(), nullptr, other_.data()));
   }
   [[nodiscard]] BranchPoints<d> points(const PackStrip<d>& strip) const {

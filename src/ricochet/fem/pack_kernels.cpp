@@ -2,6 +2,7 @@
 
 #include "ricochet/fem/element_matrices.hpp"
 #include "ricochet/fem/node_packs.hpp"
+#include "ricochet/fem/path_kernels.hpp"
 #include "ricochet/fem/symmetric_tensor.hpp"
 
 namespace ricochet {
@@ -192,9 +193,8 @@ struct Strains {
 };
 
 template <int d>
-struct RateStresses {
+struct StrainChanges {
   Index points;
-  const IsotropicElasticity& law;
   const double *gradients, *increments;
   double* result;
 
@@ -204,14 +204,14 @@ struct RateStresses {
       PointGradient<d, W> f(gradients + p * gradient_components<d> * W);
       const PointGradient<d, W> change(increments + p * gradient_components<d> * W);
       for (int i = 0; i < d; ++i) f.matrix.entry[i][i] += 1.0;
-      const PackTensor<d, W> rate = symmetric<d, W>(
+      const PackTensor<d, W> of_strain = symmetric<d, W>(
           [&](int i, int j) RICOCHET_LAMBDA_OF_CALLER {
             return i == j ? column_product(f.matrix, i, change.matrix, i)
                           : 0.5 * (column_product(f.matrix, i, change.matrix, j) +
                                    column_product(f.matrix, j, change.matrix, i));
           },
           (1.0 + f.zz) * change.zz);
-      store_tensor(result + p * strain_components<d> * W, linear_stress(law, rate));
+      store_tensor(result + p * strain_components<d> * W, of_strain);
     }
   }
 };
@@ -313,9 +313,8 @@ bool find_strains(Index points, bool is_linear, const double* gradients, const d
 }
 
 template <int d>
-void find_rate_stresses(Index points, const IsotropicElasticity& law, const double* gradients, const double* increments,
-                        double* stresses) {
-  run_in_packs(RateStresses<d>{points, law, gradients, increments, stresses});
+void find_strain_changes(Index points, const double* gradients, const double* increments, double* changes) {
+  run_in_packs(StrainChanges<d>{points, gradients, increments, changes});
 }
 
 template <int d>
@@ -328,8 +327,8 @@ template void find_gradients<2>(const PackStrip<2>&, const double*, double*);
 template void find_gradients<3>(const PackStrip<3>&, const double*, double*);
 template bool find_strains<2>(Index, bool, const double*, const double*, double*);
 template bool find_strains<3>(Index, bool, const double*, const double*, double*);
-template void find_rate_stresses<2>(Index, const IsotropicElasticity&, const double*, const double*, double*);
-template void find_rate_stresses<3>(Index, const IsotropicElasticity&, const double*, const double*, double*);
+template void find_strain_changes<2>(Index, const double*, const double*, double*);
+template void find_strain_changes<3>(Index, const double*, const double*, double*);
 template void add_forces<2>(const PackStrip<2>&, bool, const double*, const double*, double*);
 template void add_forces<3>(const PackStrip<3>&, bool, const double*, const double*, double*);
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "ricochet/fem/cell_packs.hpp"
-#include "ricochet/fem/isotropic_elasticity.hpp"
 #include "ricochet/fem/kernel_block.hpp"
 #include "ricochet/fem/material_law.hpp"
 
@@ -33,16 +32,11 @@ template <int d>
 void find_gradients(const PackStrip<d>& strip, const double* numbers, double* gradients);
 
 /// Computes Green's strain of H (for the linear law ½(H + Hᵀ)); with the gradients of an increment Δ, the mean of
-/// those at both ends, E + ⅛ (∇Δ)ᵀ∇Δ. Returns whether det F > 0 everywhere (always for the linear law; of the in-plane
+/// those at H ± ½∇Δ, E + ⅛ (∇Δ)ᵀ∇Δ. Returns whether det F > 0 everywhere (always for the linear law; of the in-plane
 /// part alone under plane stress).
 template <int d>
 [[nodiscard]] bool find_strains(Index points, bool is_linear, const double* gradients, const double* increments,
                                 double* strains);
-
-/// Computes the stress, by a linear law, of the derivative of E along an increment, ½(Fᵀ∇Δ + (∇Δ)ᵀF).
-template <int d>
-void find_rate_stresses(Index points, const IsotropicElasticity& law, const double* gradients, const double* increments,
-                        double* stresses);
 
 /// Adds ∫ F S ∇φ_a to the numbers of a part; for the linear law F = I.
 template <int d>

@@ -258,6 +258,7 @@ StepSolverOptions step_solver_options(const Case& input) {
   if (input.solver.method == "direct") options.method = SolverMethod::direct;
   if (input.solver.method == "iterative") options.method = SolverMethod::iterative;
   options.tolerance = input.solver.tolerance;
+  options.newton_tolerance = input.solver.newton_tolerance;
   options.memory = 1e9 * input.solver.memory.value_or(0.0);
   options.preconditioner = input.solver.preconditioner;
   options.all_points = input.solver.contact_points == "all";

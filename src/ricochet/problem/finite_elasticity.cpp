@@ -55,26 +55,23 @@ void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const
   condense(force);
 }
 
-void FiniteElasticity::mean_force(const Vector& middle, const Vector& increment, Vector& force) const {
-  require_positive_volume(cells_.mean_force(complete(middle, displacement_), complete(increment, increment_), force));
+void FiniteElasticity::path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                  Vector& force) const {
+  require_positive_volume(
+      cells_.path_force(complete(middle, displacement_), complete(increment, increment_), rules, force));
   condense(force);
 }
 
-void FiniteElasticity::mean_forces(const Vector& middle, const Vector& increment, Vector& force,
-                                   Vector& of_strain) const {
-  require_positive_volume(
-      cells_.mean_forces(complete(middle, displacement_), complete(increment, increment_), force, of_strain));
-  condense(force);
-  condense(of_strain);
+PathRules FiniteElasticity::path_rules() const {
+  return PathRules(std::size_t(body_.mesh->cell_count()), PathRule::two_points);
+}
+
+bool FiniteElasticity::raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const {
+  return cells_.raise_path_rules(complete(middle, displacement_), complete(increment, increment_), rules);
 }
 
 double FiniteElasticity::energy(const Vector& displacement) const {
   return cells_.energy(complete(displacement, displacement_));
-}
-
-void FiniteElasticity::strain_force(const Vector& displacement, const Vector& increment, Vector& force) const {
-  cells_.strain_force(complete(displacement, displacement_), complete(increment, increment_), force);
-  condense(force);
 }
 
 SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const { return step_tangent(displacement, 0.0); }
@@ -86,8 +83,12 @@ SparseMatrix FiniteElasticity::step_tangent(const Vector& displacement, double s
 }
 
 BranchStep FiniteElasticity::complete(const BranchStep& step) const {
-  return {complete(step.middle, displacement_), complete(step.increment, increment_), complete(step.end, end_),
-          step.internal, step.step};
+  return {complete(step.middle, displacement_),
+          complete(step.increment, increment_),
+          complete(step.start, start_),
+          complete(step.end, end_),
+          step.internal,
+          step.step};
 }
 
 void FiniteElasticity::add_branches(Vector& force) const {

@@ -14,11 +14,11 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells);
 
   void evaluate(const Vector& displacement, Vector& force) const override;
-  void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
-  void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const override;
+  void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
+  [[nodiscard]] PathRules path_rules() const override;
+  bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override;
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;
-  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
   [[nodiscard]] std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const override;
   [[nodiscard]] bool is_linear() const override { return false; }
   using InternalForce::tangent;
@@ -47,7 +47,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] BranchStep complete(const BranchStep& step) const;
   void add_branches(Vector& force) const;
 
-  mutable Vector displacement_, increment_, end_, at_, branches_;
+  mutable Vector displacement_, increment_, start_, end_, at_, branches_;
 };
 
 }  // namespace ricochet

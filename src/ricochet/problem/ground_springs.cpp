@@ -34,19 +34,9 @@ double GroundSprings::energy(const Vector& displacement, const Vector& force) co
   return bodies_->energy(displacement, force) + own_energy(displacement);
 }
 
-/// Springs do not strain a body; if everything is linear, this force is the tangent times the increment.
-void GroundSprings::strain_force(const Vector& displacement, const Vector& increment, Vector& force) const {
-  bodies_->strain_force(displacement, increment, force);
-  if (is_linear()) add(increment, force);
-}
-
-void GroundSprings::mean_force(const Vector& middle, const Vector& increment, Vector& force) const {
-  bodies_->mean_force(middle, increment, force);
-  add(middle, force);
-}
-
-void GroundSprings::mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const {
-  bodies_->mean_forces(middle, increment, force, of_strain);
+void GroundSprings::path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
+                               Vector& force) const {
+  bodies_->path_force(middle, increment, rules, force);
   add(middle, force);
 }
 

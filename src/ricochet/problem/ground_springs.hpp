@@ -15,9 +15,11 @@ class GroundSprings final : public InternalForce {
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
-  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
-  void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
-  void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const override;
+  void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
+  [[nodiscard]] PathRules path_rules() const override { return bodies_->path_rules(); }
+  bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override {
+    return bodies_->raise_path_rules(middle, increment, rules);
+  }
   [[nodiscard]] std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const override {
     return bodies_->restricted_to(nodes);
   }

@@ -19,14 +19,13 @@ namespace {
 
 }  // namespace
 
-void InternalForce::mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const {
-  mean_force(middle, increment, force);
-  strain_force(middle, increment, of_strain);
-}
-
 std::shared_ptr<const InternalForce> InternalForce::restricted_to(const std::vector<char>&) const { throw_linear(); }
 
-void InternalForce::mean_force(const Vector&, const Vector&, Vector&) const { throw_linear(); }
+void InternalForce::path_force(const Vector&, const Vector&, const PathRules&, Vector&) const { throw_linear(); }
+
+PathRules InternalForce::path_rules() const { throw_linear(); }
+
+bool InternalForce::raise_path_rules(const Vector&, const Vector&, PathRules&) const { throw_linear(); }
 
 double InternalForce::energy(const Vector& displacement, const Vector&) const { return energy(displacement); }
 
@@ -48,10 +47,6 @@ LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& 
 void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const {
   rigid_.remove(displacement, deformation_);
   stiffness_.multiply(deformation_, force);
-}
-
-void LinearElasticity::strain_force(const Vector&, const Vector& increment, Vector& force) const {
-  evaluate(increment, force);
 }
 
 double LinearElasticity::energy(const Vector& displacement) const {

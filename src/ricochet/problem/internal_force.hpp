@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/fem/strain_path.hpp"
 #include "ricochet/linear_algebra/matrix_graph.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/rigid_motion.hpp"
@@ -23,18 +24,16 @@ class InternalForce {
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU for linear elasticity).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
-  /// Computes the forces at a displacement of the stress 𝔻₀ : (the derivative of the strain along `increment`), with
-  /// the tangent 𝔻₀ at zero strain (for linear elasticity K times the increment). These forces are unaffected by
-  /// rotations and have no resultant and no moment about the current positions.
-  virtual void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const = 0;
   /// Strain energy if the force that evaluate() returns at this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
-  /// Computes the forces of a step from u₀ to u₁ = u₀ + increment, at a displacement in its middle: those of the
-  /// stress of ½(E₀+E₁) if that displacement is ½(u₀+u₁), so that a rigid motion has none. Only for nonlinear
-  /// forces; throws as evaluate() does.
-  virtual void mean_force(const Vector& middle, const Vector& increment, Vector& force) const;
-  /// Computes mean_force() and strain_force() at the same displacement, at less cost than two separate calls.
-  virtual void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const;
+  /// Computes the forces, at a displacement `middle`, of the mean stress along the path of the strain from
+  /// `middle` − ½ `increment` to `middle` + ½ `increment` (fem/strain_path.hpp). Their work on the increment is the
+  /// change of the energy, and a rigid motion has none. Only for nonlinear forces; throws as evaluate() does.
+  virtual void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const;
+  /// Rules of path_force() for small changes of the strain, one per cell of the body; and raises the rules of the cells
+  /// whose strain changes more. Returns whether any was raised. Only for nonlinear forces.
+  [[nodiscard]] virtual PathRules path_rules() const;
+  virtual bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const;
   /// Returns the contribution of the cells at some nodes (per node, 1: included): their forces and the energy of these
   /// cells alone. Only for nonlinear forces.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const;
@@ -72,7 +71,6 @@ class LinearElasticity final : public InternalForce {
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
-  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
   [[nodiscard]] bool is_linear() const override { return true; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.to_sparse(); }

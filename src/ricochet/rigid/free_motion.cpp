@@ -99,6 +99,10 @@ SpaceVector FreeMotion::torque(const Vector& force) const {
   return to_space(axes_, own.cwiseProduct(gyration_));
 }
 
+SpaceVector FreeMotion::torque(const SpaceVector& arm, const Vector& force) const {
+  return cross(arm, force.segment(centre_node() * dimension(), dimension()));
+}
+
 void FreeMotion::add_torque(const SpaceVector& torque, Vector& force) const {
   force.segment(rotation_node() * dimension(), gyration_.size()) += to_axes(axes_, torque).cwiseQuotient(gyration_);
 }
@@ -106,6 +110,13 @@ void FreeMotion::add_torque(const SpaceVector& torque, Vector& force) const {
 SpaceVector FreeMotion::angular_momentum(const Vector& displacement, const Vector& velocity) const {
   const SpaceVector own = velocity.segment(rotation_node() * dimension(), gyration_.size());
   return to_space(axes(displacement), inertia_.mass * own.cwiseProduct(gyration_));
+}
+
+SpaceVector FreeMotion::velocity_of_momentum(const SpaceVector& momentum, const Vector& displacement) const {
+  const SpaceVector own = to_axes(axes(displacement), momentum).cwiseQuotient(inertia_.mass * gyration_);
+  SpaceVector result = SpaceVector::Zero(dimension());
+  result.head(own.size()) = own;
+  return result;
 }
 
 SpaceVector FreeMotion::angular_velocity(const Vector& displacement, const Vector& velocity) const {

@@ -51,10 +51,14 @@ class FreeMotion {
   void write_row(const SpaceVector& direction, const SpaceVector& arm, const Pose::Rotation& axes, double* row) const;
   /// Torque about the centre from forces on its second node (about A₀): a vector in space, one component in the plane.
   [[nodiscard]] SpaceVector torque(const Vector& force) const;
+  /// Torque about the centre of a force on its first node that acts at an arm from there, in the same components.
+  [[nodiscard]] SpaceVector torque(const SpaceVector& arm, const Vector& force) const;
   /// Adds a torque in space to the forces of a step.
   void add_torque(const SpaceVector& torque, Vector& force) const;
   /// Angular momentum about the centre at a displacement with this velocity, in the same components.
   [[nodiscard]] SpaceVector angular_momentum(const Vector& displacement, const Vector& velocity) const;
+  /// Velocity V of the second node for an angular momentum about the centre, in the same components, at a displacement.
+  [[nodiscard]] SpaceVector velocity_of_momentum(const SpaceVector& momentum, const Vector& displacement) const;
   /// Angular velocity in space.
   [[nodiscard]] SpaceVector angular_velocity(const Vector& displacement, const Vector& velocity) const;
   /// Velocity V of the second node for an angular velocity in space, at a displacement.

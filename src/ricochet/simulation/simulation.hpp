@@ -90,6 +90,7 @@ class Simulation : private StageSolve {
   /// Passes the energy at the end of a trial step of the longest length to the step control.
   void take_trial_step();
   Stage& stage(std::size_t number) override;
+  [[nodiscard]] double newton_tolerance() const override { return options_.newton_tolerance; }
   const StageSolution& solve(std::size_t number) override;
   void rotate_operators(const Vector& displacement) override { current_->solver->rotate_operators(displacement); }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {

@@ -8,11 +8,18 @@
 
 namespace ricochet {
 
-void NewtonProgress::start(double rounding) {
+void NewtonProgress::start(double rounding, double tolerance) {
   rounding_ = rounding;
+  tolerance_ = tolerance;
   renewals_ = total_iterations_ = 0;
   accelerates_ = false;
   restart();
+}
+
+bool NewtonProgress::tighten() {
+  if (tolerance_ <= thresholds_.least_tolerance) return false;
+  tolerance_ = thresholds_.least_tolerance;
+  return true;
 }
 
 void NewtonProgress::restart() {
@@ -32,7 +39,7 @@ NewtonProgress::Advice NewtonProgress::assess(double correction, double incremen
   }
   const double rate = correction / last_;
   const double left = rate < 1.0 ? correction * rate / (1.0 - rate) : correction;
-  if (rate < 1.0 && left <= thresholds_.tolerance * increment) return Advice::done;
+  if (rate < 1.0 && left <= tolerance_ * increment) return Advice::done;
   // The accumulated rounding of the forces may exceed that of the positions: further iterations gain nothing.
   if (rate >= thresholds_.stalled_rate &&
       correction <= std::max(thresholds_.loose_tolerance * increment, thresholds_.max_rounding * rounding_))

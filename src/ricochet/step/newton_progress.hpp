@@ -19,14 +19,19 @@ class NewtonProgress {
   };
   explicit NewtonProgress(const NewtonThresholds& thresholds = {}) : thresholds_(thresholds) {}
 
-  /// Begins a solution; `rounding`: rounding error of the positions, the smallest meaningful correction.
-  void start(double rounding);
+  /// Begins a solution; `rounding`: rounding error of the positions, the smallest meaningful correction; `tolerance`:
+  /// of the error that is left, relative to the increment.
+  void start(double rounding, double tolerance);
+  /// Begins a solution as accurate as rounding permits.
+  void start(double rounding) { start(rounding, thresholds_.least_tolerance); }
   /// Resets the rates after a new factorization.
   void restart();
-  /// Assesses an iteration by the largest entries of its correction and of the increment so far, lengths. With several
-  /// ranks both must be those of the whole body, or the ranks would follow different advice.
+  /// Assesses an iteration by the sizes of its correction and of the increment so far, in the same norm: lengths. With
+  /// several ranks both must be those of the whole body, or the ranks would follow different advice.
   Advice assess(double correction, double increment);
   void count_renewal() { ++renewals_; }
+  /// Requires the accuracy that rounding permits from now on, until the next start(). Returns false if it already does.
+  [[nodiscard]] bool tighten();
   /// Whether iterations may be accelerated (linear_algebra/anderson_acceleration.hpp): the corrections grow, or
   /// decrease slowly even with a new factorization. The reason is a force that no factorization contains, such as that
   /// of contact, which rotates with the surface on which it acts.
@@ -40,6 +45,7 @@ class NewtonProgress {
   }
 
   NewtonThresholds thresholds_;
+  double tolerance_ = 0.0;  ///< of this solution
   double rounding_ = 0.0, last_ = 0.0, least_ = 0.0;
   int iterations_ = 0, total_iterations_ = 0, slow_ = 0, growing_ = 0, renewals_ = 0;
   bool accelerates_ = false;

@@ -17,6 +17,9 @@ class StageSolve {
   /// is none, or if it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
 
+  /// Relative accuracy of the increment of a step, to which nonlinear equations are solved.
+  [[nodiscard]] virtual double newton_tolerance() const = 0;
+
   // For a nonlinear internal force, with displacements per dof:
   /// Rotates the operators with the bodies at this displacement.
   virtual void rotate_operators(const Vector& displacement) = 0;

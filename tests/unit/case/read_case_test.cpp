@@ -224,6 +224,7 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"solver.method", "auto"},
                                                              {"solver.preconditioner", "auto"},
                                                              {"solver.tolerance", "1e-10"},
+                                                             {"solver.newton_tolerance", "1e-08"},
                                                              {"solver.contact_points", "near"},
                                                              {"output.format", "xdmf"},
                                                              {"output.fields_precision", "double"},

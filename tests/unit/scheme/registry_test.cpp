@@ -81,6 +81,7 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
   struct NoStages final : StageSolve {
     Stage& stage(std::size_t) override { throw std::logic_error("it has no stage"); }
     const StageSolution& solve(std::size_t) override { throw std::logic_error("it has no stage"); }
+    double newton_tolerance() const override { return 1e-9; }
     void rotate_operators(const Vector&) override {}
     void renew_operators(const Vector&, const Vector&) override {}
   } stages;

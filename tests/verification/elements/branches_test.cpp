@@ -36,7 +36,7 @@ TEST_P(BranchesOfKind, TheForceIsTheDerivativeOfTheEnergy) {
   const Vector u = some_displacement(0.05, 2), direction = some_displacement(1.0, 3);
   const Vector middle = some_displacement(0.05, 6), end = some_displacement(0.05, 7), increment = end - middle;
   for (const double h : {1e-9, step, 1e3}) {
-    const BranchStep over{middle, increment, end, internal_, h};
+    const BranchStep over{middle, increment, u, end, internal_, h};
     Vector force = Vector::Zero(u.size());
     force_->add_start_force(over, u, force);
     constexpr double small = 1e-5;
@@ -46,15 +46,15 @@ TEST_P(BranchesOfKind, TheForceIsTheDerivativeOfTheEnergy) {
     EXPECT_NEAR(force.dot(direction), difference, 1e-8 * force.norm() * direction.norm());
   }
   // The energy stored at an instant, without time to relax.
-  EXPECT_NEAR(force_->start_energy({middle, increment, end, internal_, 1e-12}, u), force_->branch_energy(u, internal_),
-              1e-10);
+  EXPECT_NEAR(force_->start_energy({middle, increment, u, end, internal_, 1e-12}, u),
+              force_->branch_energy(u, internal_), 1e-10);
 }
 
 TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
   const Vector start = some_displacement(0.05, 2), end = some_displacement(0.05, 4);
   const Vector middle = 0.5 * (start + end), increment = end - start;
   for (const double h : {1e-6, 0.1, 1.0, 1e4}) {
-    const BranchStep over{middle, increment, end, internal_, h};
+    const BranchStep over{middle, increment, start, end, internal_, h};
     Vector force = Vector::Zero(end.size()), next;
     force_->add_mean_force(over, force);
     const double dissipated = force_->advance_internal(over, next), before = force_->branch_energy(start, internal_);
@@ -63,7 +63,7 @@ TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
     // The force at the end follows from the internal strains there.
     Vector at_end = Vector::Zero(end.size()), same = at_end;
     force_->add_end_force(over, at_end);
-    force_->add_start_force({middle, increment, end, next, 1e-14}, end, same);
+    force_->add_start_force({middle, increment, start, end, next, 1e-14}, end, same);
     EXPECT_LT((at_end - same).norm(), 1e-11 * (1.0 + same.norm()));
   }
 }
@@ -77,7 +77,7 @@ TEST_P(BranchesOfKind, NothingChangesWhereTheMotionIsTurned) {
               1e-12 * force_->branch_energy(start, internal_));
   const auto advance = [&](const Vector& from, const Vector& to, Vector& next, Vector& force) {
     const Vector middle = 0.5 * (from + to), increment = to - from;
-    const BranchStep over{middle, increment, to, internal_, step};
+    const BranchStep over{middle, increment, from, to, internal_, step};
     force.setZero(to.size());
     force_->add_mean_force(over, force);
     return force_->advance_internal(over, next);
@@ -102,7 +102,7 @@ TEST_P(BranchesOfKind, TheTangentHasTheStiffnessOfAStep) {
   const auto mean_force = [&](const Vector& end) {
     const Vector middle = 0.5 * end;
     Vector force = Vector::Zero(end.size());
-    force_->add_mean_force({middle, end, end, internal_, step}, force);
+    force_->add_mean_force({middle, end, Vector::Zero(end.size()), end, internal_, step}, force);
     return force;
   };
   const Vector expected = mean_force(u + direction) - mean_force(u - direction);

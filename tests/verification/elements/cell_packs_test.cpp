@@ -43,12 +43,13 @@ struct Forces {
   Forces(const LargeBody& of, const NodeGraph& graph, const std::vector<int>& some = {}) {
     const ElasticCells cells(of.body->body, &graph, some);
     EXPECT_EQ(cells.force(of.displacement, force).cell, -1);
-    EXPECT_EQ(cells.mean_force(of.displacement, of.increment, mean).cell, -1);
-    EXPECT_EQ(cells.mean_forces(of.displacement, of.increment, both, rate).cell, -1);
-    cells.strain_force(of.displacement, of.increment, rate_alone);
+    // Some cells of a pack have other rules than the others.
+    PathRules rules(of.body->body.cell_material.size());
+    for (std::size_t cell = 0; cell < rules.size(); ++cell) rules[cell] = PathRule(cell * cell % 7 % 4);
+    EXPECT_EQ(cells.path_force(of.displacement, of.increment, rules, path).cell, -1);
     energy = cells.energy(of.displacement);
   }
-  Vector force, mean, both, rate, rate_alone;
+  Vector force, path;
   double energy = 0.0;
 };
 
@@ -71,11 +72,8 @@ TEST_P(CellPacksOfKind, ForcesAreTheSameInOnePartAndInMany) {
   // Sums of some ten numbers in another order.
   const double tolerance = 1e-14 * one.force.norm();
   EXPECT_LT((parts.force - one.force).norm(), tolerance);
-  EXPECT_LT((parts.mean - one.mean).norm(), tolerance);
-  EXPECT_LT((parts.rate - one.rate).norm(), tolerance);
+  EXPECT_LT((parts.path - one.path).norm(), tolerance);
   EXPECT_NEAR(parts.energy, one.energy, 1e-14 * one.energy);
-  EXPECT_EQ(parts.both, parts.mean);
-  EXPECT_EQ(parts.rate_alone, parts.rate);
 }
 
 TEST_P(CellPacksOfKind, BitsAreTheSameForAnyNumberOfThreads) {
@@ -86,8 +84,7 @@ TEST_P(CellPacksOfKind, BitsAreTheSameForAnyNumberOfThreads) {
   const Forces together(test, graph);
   set_thread_count(1);
   EXPECT_EQ(alone.force, together.force);
-  EXPECT_EQ(alone.mean, together.mean);
-  EXPECT_EQ(alone.rate, together.rate);
+  EXPECT_EQ(alone.path, together.path);
   EXPECT_EQ(alone.energy, together.energy);
 }
 
@@ -99,16 +96,16 @@ TEST_P(CellPacksOfKind, ForcesOfSomeCellsAndOfTheOthersAreThoseOfAll) {
   std::vector<std::vector<int>> cells(2);
   for (Index cell = 0; cell < test.body->mesh.cell_count(); ++cell)
     cells[cell % 5 == 0 || cell % 100 < 30 ? 1 : 0].push_back(int(cell));
-  Vector sum = Vector::Zero(all.force.size()), rates = sum;
+  Vector sum = Vector::Zero(all.force.size()), paths = sum;
   double energy = 0.0;
   for (const std::vector<int>& some : cells) {
     const Forces own(test, graph, some);
     sum += own.force;
-    rates += own.rate;
+    paths += own.path;
     energy += own.energy;
   }
   EXPECT_LT((sum - all.force).norm(), 1e-14 * all.force.norm());
-  EXPECT_LT((rates - all.rate).norm(), 1e-14 * all.force.norm());
+  EXPECT_LT((paths - all.path).norm(), 1e-14 * all.force.norm());
   EXPECT_NEAR(energy, all.energy, 1e-14 * all.energy);
 }
 

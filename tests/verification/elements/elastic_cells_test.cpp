@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "ricochet/fem/point_law.hpp"
@@ -102,25 +103,83 @@ TEST_P(ElasticCellsOfKind, RotationsChangeNothing) {
   EXPECT_LT((turned_force - Vector(wanted.reshaped())).norm(), 1e-12 * force.norm());
 }
 
-/// It has neither a resultant nor a moment about the current positions; its work on the increment is a square.
-TEST_P(ElasticCellsOfKind, StrainForceIsSelfEquilibrated) {
+/// Path between two displacements, given by its middle and its increment.
+struct Path {
+  Path(const Vector& from, const Vector& to) : middle(0.5 * (from + to)), increment(to - from) {}
+  Vector middle, increment;
+};
+
+constexpr std::array all_rules{PathRule::two_points, PathRule::three_points, PathRule::three_points_exact,
+                               PathRule::five_points_exact};
+
+/// Work of the path force less the change of the energy, relative to the energies.
+double work_lacking(const FiniteElasticity& force, const Vector& from, const Vector& to, const PathRules& rules) {
+  const Path path(from, to);
+  Vector result;
+  force.path_force(path.middle, path.increment, rules, result);
+  const double start = force.energy(from), end = force.energy(to);
+  return std::abs(result.dot(path.increment) - (end - start)) / (end + start);
+}
+
+TEST_P(ElasticCellsOfKind, ThePathForceDoesTheWorkOfTheEnergy) {
+  const Vector from = random_displacement(0.02, 5), change = random_displacement(0.02, 6);
+  const std::size_t cells = force_->path_rules().size();
+  for (const PathRule rule : all_rules) {
+    const PathRules rules(cells, rule);
+    const double whole = work_lacking(*force_, from, from + change, rules);
+    if (is_exact(rule)) {
+      EXPECT_LT(whole, 1e-13);
+      continue;
+    }
+    // The error of n points is of order 2n + 1 in the change; a law with a quadratic energy has none.
+    const double half = work_lacking(*force_, from + 0.25 * change, from + 0.75 * change, rules);
+    EXPECT_LT(whole, 1e-3);
+    EXPECT_LT(half, std::max(1e-14, whole / (rule == PathRule::two_points ? 20.0 : 70.0))) << int(rule);
+  }
+}
+
+TEST_P(ElasticCellsOfKind, ThePathForceIsSelfEquilibrated) {
   if (kind().law == "linear") return;
-  const Vector u = random_displacement(0.03, 5), change = random_displacement(0.02, 6);
-  Vector force, internal;
-  force_->strain_force(u, change, force);
-  force_->evaluate(u, internal);
-  EXPECT_GT(force.dot(change), 0.0);
+  const Vector from = random_displacement(0.03, 5);
+  const Path path(from, from + random_displacement(0.02, 6));
   const Index d = dimension();
-  for (const Vector& each : {force, internal}) {
-    const Points forces = each.reshaped(d, body_->space.node_count());
-    const Points places = body_->space.nodes + u.reshaped(d, body_->space.node_count());
-    EXPECT_LT(std::abs(forces.row(1).sum()), 1e-13 * each.norm());
+  for (const PathRule rule : all_rules) {
+    Vector force;
+    force_->path_force(path.middle, path.increment, PathRules(force_->path_rules().size(), rule), force);
+    const Points forces = force.reshaped(d, body_->space.node_count());
+    const Points places = body_->space.nodes + path.middle.reshaped(d, body_->space.node_count());
+    EXPECT_LT(std::abs(forces.row(1).sum()), 1e-13 * force.norm());
     if (is_axisymmetric()) continue;
-    EXPECT_LT(forces.rowwise().sum().norm(), 1e-13 * each.norm());
+    EXPECT_LT(forces.rowwise().sum().norm(), 1e-13 * force.norm());
     if (!kind().element.contains_affine()) continue;
     const Matrix moments = forces * places.transpose();
-    EXPECT_LT((moments - moments.transpose()).norm(), 1e-12 * each.norm());
+    EXPECT_LT((moments - moments.transpose()).norm(), 1e-12 * force.norm());
   }
+}
+
+TEST_P(ElasticCellsOfKind, ARigidMotionHasNoPathForce) {
+  if (kind().law == "linear" || is_axisymmetric() || !kind().element.contains_affine()) return;
+  const Vector rest = Vector::Zero(body_->space.dof_count());
+  const Path path(rest, turned(rest, some_rotation(dimension())));
+  Vector force, of_strain;
+  for (const PathRule rule : all_rules) {
+    force_->path_force(path.middle, path.increment, PathRules(force_->path_rules().size(), rule), force);
+    EXPECT_LT(force.lpNorm<Eigen::Infinity>(), 1e-13);
+  }
+}
+
+/// The rules are those of the largest change of the strain in a cell, and never fall.
+TEST_P(ElasticCellsOfKind, PathRulesFollowTheChangeOfTheStrain) {
+  PathRules rules = force_->path_rules();
+  const PathRules lowest = rules;
+  const Vector rest = Vector::Zero(body_->space.dof_count()), change = random_displacement(0.1, 6);
+  const auto raise = [&](double size) { return force_->raise_path_rules(rest, size * change, rules); };
+  EXPECT_FALSE(raise(1e-3));
+  EXPECT_EQ(raise(1.0), kind().law != "linear");
+  EXPECT_EQ(rules != lowest, kind().law != "linear");
+  const PathRules raised = rules;
+  EXPECT_FALSE(raise(1e-3));
+  EXPECT_EQ(rules, raised);
 }
 
 /// In homogeneous strain all cells have the stress of the law, with mean dilatation or without.

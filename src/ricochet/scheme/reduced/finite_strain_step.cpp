@@ -12,18 +12,9 @@ namespace ricochet {
 
 namespace {
 
-double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
-  double sum = 0.0;
-  for (const Index dof : problem.contact_dofs) sum += a[dof] * b[dof];
-  return sum;
-}
-
-/// Work of forces on rigid bodies that move freely: part of the kinetic energy, as on everything that has inertia.
-double on_free_bodies(const SemidiscreteProblem& problem, const Vector& force, const Vector& end, const Vector& start) {
-  double sum = 0.0;
-  for (Index dof = problem.cell_node_count() * problem.dimension; dof < end.size(); ++dof)
-    sum += force[dof] * (end[dof] - start[dof]);
-  return sum;
+/// Largest motion of a node, in any direction: turned motions need as many iterations.
+double largest_motion(const SemidiscreteProblem& problem, const Vector& motion) {
+  return motion.reshaped(problem.dimension, problem.nodes.cols()).colwise().norm().maxCoeff();
 }
 
 }  // namespace
@@ -34,6 +25,7 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
   velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
   contact_right_hand_side_.resize(Index(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
+  lowest_rules_ = problem.internal_force->path_rules();
 }
 
 std::vector<OperatorCoefficients> FiniteStrainStep::operators(const SemidiscreteProblem& problem, double step,
@@ -53,15 +45,11 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   base_ = state.displacement + (0.5 * step) * state.velocity;
   flight_->predict(state.displacement, state.velocity, step, end_);
   middle_ = 0.5 * (state.displacement + end_);
-  jumped_displacement_ = state.displacement;
-  contact_energy_start_.reset();
-  sigma_.start();
-  kinetic_ = kinetic_start_ = 0.5 * problem.mass.quadratic_form(state.velocity);
-  converged_ = corrects_velocity_ = false;
-  energy_defect_size_ = std::numeric_limits<double>::infinity();
+  path_rules_ = lowest_rules_;
+  path_increment_ = 2.0 * (end_ - middle_);
+  problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
+  raises_ = 0;
   part_ = std::clamp(step / whole_step_, thresholds_.min_part, 1.0);
-  stalled_iterations_ = 0;
-  energy_defect_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   has_reactions_ = false;
   acceleration_.restart();
   if (problem.contact.follows_motion()) lagged_.start(state);
@@ -73,65 +61,37 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
                       : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
 }
 
-double FiniteStrainStep::tolerance() const {
-  return sigma_.is_weak() ? thresholds_.weak_tolerance : thresholds_.tolerance;
-}
-
-/// Computes f̄, p, f(u₁), and σ from the balance of energy at these.
-void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
+/// Computes D and f(u₁).
+void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step, const State& state) {
   const InternalForce& elastic = *problem.internal_force;
-  const ViscousForce* const viscous = elastic.viscous();
-  increment_ = end_ - state.displacement;
-  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
-  if (near || sigma_.value() != 0.0) {
-    elastic.mean_forces(middle_, increment_, force_, strain_force_);
-  } else {
-    elastic.mean_force(middle_, increment_, force_);
-  }
-  if (viscous != nullptr) viscous->add_mean_force(branches, force_);
+  path_increment_ = 2.0 * (end_ - middle_);
+  elastic.path_force(middle_, path_increment_, path_rules_, force_);
+  const BranchStep branches = branch_step(step, state);
+  if (const ViscousForce* const viscous = elastic.viscous(); viscous != nullptr)
+    viscous->add_mean_force(branches, force_);
   if (contact_cells_) contact_cells_->evaluate(end_, end_force_);
   if (contact_cells_ && contact_cells_->viscous() != nullptr)
     contact_cells_->viscous()->add_end_force(branches, end_force_);
   loads_.evaluate(problem, middle_, end_, contact_cells_ != nullptr);
-  if (!near) return;
-  if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
-  energy_ = stored_energy(elastic, end_, internal_);
-  if (!std::isfinite(energy_)) {
-    elastic.evaluate(end_, scratch_);  // throws the error that names the inverted cell
-    throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is not finite");
-  }
-  load_work_ = contact_cells_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
-  // P(x) on contact nodes is in neither term, since the work of D contains it, too.
-  const double required = (energy_ - energy_start_) + viscous_dissipation_ -
-                          on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
-                          end_weight_ * (work_at_end_ - dissipation_);
-  mean_external_force_ = loads_.mean() + mean_contact_force_;
-  const double has = force_.dot(increment_) - on_contact(problem, mean_external_force_, increment_);
-  const double unit = strain_force_.dot(increment_);
-  energy_defect_ = required - has - sigma_.value() * unit;
-  const double size = std::abs(energy_start_ + energy_);
-  // A defect at the level of rounding carries no information, least of all if the body hardly moves.
-  if (std::abs(energy_defect_) <= tolerance() * size || unit <= thresholds_.tolerance * thresholds_.tolerance * size)
-    return;
-  if (sigma_.choose((required - has) / unit, energy_defect_, thresholds_.near_rounding * size, converged_))
-    progress_.restart();  // the next correction is due to σ
+}
+
+/// Computes L̄ + P(x) − D − M (v₁−v₀)/h − (2/h) C (x−u₀): the force that is not balanced, without that of contact.
+void FiniteStrainStep::find_imbalance(const SemidiscreteProblem& problem, double step, const State& state,
+                                      Vector& force) {
+  inertial_increment_ = middle_ - base_;
+  problem.mass.multiply(inertial_increment_, inertial_force_);
+  force = loads_.mean() - force_ - (4.0 / (step * step)) * inertial_force_;
+  loads_.add_pressure(force);
+  for (const auto& body : problem.free_bodies) body->add_gyroscopic_force(end_, state.velocity, step, force);
+  if (!problem.has_damping()) return;
+  half_increment_ = middle_ - state.displacement;
+  problem.damping.evaluate(half_increment_, damping_force_);
+  force -= (2.0 / step) * damping_force_;
 }
 
 /// Computes b of the stage: the residual at the middle.
 void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
-  inertial_increment_ = middle_ - base_;
-  problem.mass.multiply(inertial_increment_, inertial_force_);
-  kinetic_ = kinetic_start_ + (4.0 / step) * (state.velocity + (2.0 / step) * inertial_increment_).dot(inertial_force_);
-  stage.right_hand_side.force = loads_.mean() - force_ - (4.0 / (step * step)) * inertial_force_;
-  loads_.add_pressure(stage.right_hand_side.force);
-  for (const auto& body : problem.free_bodies)
-    body->add_gyroscopic_force(end_, state.velocity, step, stage.right_hand_side.force);
-  if (sigma_.value() != 0.0) stage.right_hand_side.force -= sigma_.value() * strain_force_;
-  if (problem.has_damping()) {
-    half_increment_ = middle_ - state.displacement;
-    problem.damping.evaluate(half_increment_, damping_force_);
-    stage.right_hand_side.force -= (2.0 / step) * damping_force_;
-  }
+  find_imbalance(problem, step, state, stage.right_hand_side.force);
   if (problem.contact.follows_motion() && has_reactions_) {
     lagged_row_force_.setZero();
     lagged_.add_difference(reactions_.normal, reactions_.tangential, lagged_row_force_);
@@ -168,8 +128,10 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
   middle_ += solution.increment;
   next_end_ = 2.0 * middle_ - state.displacement;
   for (const Index dof : problem.contact_dofs) next_end_[dof] = end_[dof] + 2.0 * solution.contact_increment[dof];
-  Iteration iteration{(next_end_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
-  iteration.correction = std::max(iteration.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
+  motion_ = next_end_ - last_end_;
+  Iteration iteration{largest_motion(problem, motion_), 0.0};
+  motion_ = 2.0 * (middle_ - last_middle_);
+  iteration.correction = std::max(iteration.correction, largest_motion(problem, motion_));
   end_ = next_end_;
   has_reactions_ = true;
   reactions_.normal = solution.normal_reaction;
@@ -177,7 +139,8 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
   reactions_.acting_normal = solution.acting_normal();
   reactions_.acting_tangential = solution.acting_tangential();
   // Increment of the step less that of a free flight: the effect of forces.
-  iteration.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
+  motion_ = 2.0 * (middle_ - base_);
+  iteration.increment = largest_motion(problem, motion_);
   return iteration;
 }
 
@@ -204,78 +167,18 @@ void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const Stat
   reactions_.acting_tangential = image_.tail(slips);
 }
 
-/// Computes Hᵀρ and Hᵀρ̄ and, if the end reactions have a part in the mean, performs one iteration for u₀ + J.
-void FiniteStrainStep::update_start(const SemidiscreteProblem& problem, double step, const State& state,
-                                    StageSolve& stages, Stage& stage, const StageSolution& solution) {
-  end_contact_force_.setZero();
-  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, end_contact_force_);
-  mean_contact_force_.setZero();
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), mean_contact_force_);
-  if (problem.contact.follows_motion()) {
-    problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
-                                          mean_contact_force_);
-  }
-  if (problem.has_rotating_obstacles())
-    equations_.observe_step(problem, state.displacement, state.time, end_, step, stage);
-  obstacle_work_ = obstacle_work(stage, solution.acting_normal(), solution.acting_tangential(), step) -
-                   on_free_bodies(problem, mean_contact_force_, end_, state.displacement);
-  end_weight_ = solution.end_weight;
-  dissipation_ = work_at_end_ = 0.0;
-  if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
-    if (!loads_.acts_at_ends()) {
-      jumped_displacement_ = state.displacement;
-      end_weight_ = 0.0;
-      return;
-    }
-  }
-  contact_cells_->evaluate(jumped_displacement_, jump_force_);
-  const ViscousForce* const viscous = contact_cells_->viscous();
-  increment_ = end_ - state.displacement;
-  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
-  if (viscous != nullptr) viscous->add_start_force(branches, jumped_displacement_, jump_force_);
-  at_start_ = loads_.mean() + end_contact_force_;
-  if (loads_.acts_at_ends()) loads_.add_at_start(at_start_);
-  start_residual_ = at_start_ - jump_force_;
-  problem.gather_contact(start_residual_, contact_right_hand_side_);
-  const Vector& change = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
-  for (const Index dof : problem.contact_dofs) jumped_displacement_[dof] += change[dof];
-  // d: both energies are those of the cells at contact nodes, as the others are equal.
-  jump_ = jumped_displacement_ - state.displacement;
-  if (!contact_energy_start_) contact_energy_start_ = contact_cells_->energy(state.displacement);
-  dissipation_ =
-      on_contact(problem, at_start_, jump_) - (contact_cells_->energy(jumped_displacement_) - *contact_energy_start_);
-  if (viscous != nullptr)
-    dissipation_ -=
-        viscous->start_energy(branches, jumped_displacement_) - viscous->start_energy(branches, state.displacement);
-  work_at_end_ = on_contact(problem, end_contact_force_, increment_) -
-                 obstacle_work(stage, solution.normal_reaction, solution.tangential_reaction, step) +
-                 on_free_bodies(problem, end_contact_force_, end_, state.displacement);
-}
-
-/// Work of reactions on the motion of the obstacles over the step.
-double FiniteStrainStep::obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step) {
-  if (stage.obstacle.normal.size() == 0) return 0.0;
-  project_motion(*stage.rows, stage.obstacle);
-  return step * (normal.dot(stage.obstacle.normal) -
-                 (tangential.size() > 0 ? tangential.dot(stage.obstacle.tangential) : 0.0));
-}
-
 void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
                               const StageSolution& solution, Vector& increment) {
   increment = end_ - state.displacement;
   before_ = state.displacement;
   if (problem.has_rotating_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step, stage);
-  inertial_increment_ = middle_ - base_;
   state.displacement = end_;
   state.internal_strain = internal_;
-  state.velocity += (4.0 / step) * inertial_increment_;
-  state.acceleration = (4.0 / (step * step)) * inertial_increment_;
-  if (corrects_velocity_) {
-    state.velocity += velocity_correction_->value();
-    state.acceleration += (1.0 / step) * velocity_correction_->value();
-  }
+  state.velocity = end_velocity_;
+  state.acceleration = (4.0 / (step * step)) * inertial_increment_ + (1.0 / step) * velocity_change_;
   follow_without_inertia(problem, increment, step, state);
   equations_.store_contact(stage, solution, step, state);
+  for (Index i = 0; i < problem.supports.size(); ++i) state.forces.support_reaction[i] = support_reaction_[i];
   loads_.store_varying(state.forces.varying_load);
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
@@ -285,13 +188,6 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
   if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
   last_energy_ = energy_;
-  corrections_ = {.load_work = load_work_,
-                  .numerical_dissipation = end_weight_ * dissipation_,
-                  .integration_error = corrects_velocity_ ? 0.0 : energy_defect_,
-                  .viscous_dissipation = viscous_dissipation_};
-  if (end_weight_ == 1.0) return;
-  // The mean does no work along the path; the end reactions' part of it does their work.
-  corrections_.contact_work = end_weight_ * work_at_end_ - (mean_contact_force_.dot(increment) - obstacle_work_);
 }
 
 /// Solves the linear stage of an iteration.
@@ -323,39 +219,34 @@ void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReactio
                                StageSolve& stages, Vector& increment) {
   start(problem, step, state);
   stages.rotate_operators(middle_);
-  evaluate(problem, step, state, false);
+  evaluate(problem, step, state);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
-                  (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
+                      (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()),
+                  stages.newton_tolerance());
   Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
   while (true) {
     const StageSolution& solution = solve_iteration(problem, acting, step, state, stages);
     const Iteration iteration = correct(problem, state, solution);
     const NewtonProgress::Advice advice = progress_.assess(iteration.correction, iteration.increment);
-    // Once displacements have converged, which lasts while σ is sought, the solution is that of the equations.
-    if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::proceed)
-      accelerate(problem, state);
-    converged_ = converged_ || advice == NewtonProgress::Advice::done;
-    if (problem.has_contact_dofs()) update_start(problem, step, state, stages, stage, solution);
-    const bool near = iteration.correction <= thresholds_.near_solution * iteration.increment || converged_;
-    evaluate_with_halving(problem, step, state, near);
+    if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::proceed) accelerate(problem, state);
+    evaluate_with_halving(problem, step, state);
+    const bool is_done = advice == NewtonProgress::Advice::done;
+    if ((is_done || iteration.correction <= thresholds_.near_solution * iteration.increment) && raise_rules(problem)) {
+      evaluate(problem, step, state);
+      progress_.restart();
+      continue;
+    }
+    if (!is_done) {
+      apply_advice(problem, advice, iteration, stages);
+      continue;
+    }
     try {
-      if (is_balanced(step, state, iteration, near)) {
+      if (close_balance(problem, step, state, stage, solution, iteration.correction)) {
         finish(problem, step, state, stage, solution, increment);
         return;
       }
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || !freeze_pairs(problem)) throw;
-      converged_ = false;
-      stalled_iterations_ = 0;
-      energy_defect_size_ = std::numeric_limits<double>::infinity();
-      sigma_.start();
-      continue;
-    }
-    if (converged_ && sigma_.is_weak()) {  // with another σ now
-      converged_ = false;
-      progress_.restart();
-    } else if (!converged_) {
-      apply_advice(problem, advice, iteration, stages);
     }
   }
 }

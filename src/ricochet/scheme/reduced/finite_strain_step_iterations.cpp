@@ -35,11 +35,18 @@ void FiniteStrainStep::throw_if_inverted(const SemidiscreteProblem& problem) {
   problem.internal_force->evaluate(middle_, scratch_);
 }
 
-void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state,
-                                             bool near) {
+/// Raises the rules of path_force() once near the solution and once at it. Returns whether the force has changed.
+bool FiniteStrainStep::raise_rules(const SemidiscreteProblem& problem) {
+  if (raises_ == max_raises) return false;
+  ++raises_;
+  path_increment_ = 2.0 * (end_ - middle_);
+  return problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
+}
+
+void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state) {
   for (int halving = 0;; ++halving) {
     try {
-      evaluate(problem, step, state, near);
+      evaluate(problem, step, state);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || halving == max_halvings) throw;

@@ -15,7 +15,6 @@ class NoForce final : public InternalForce {
  public:
   void evaluate(const Vector&, Vector&) const override { refuse(); }
   [[nodiscard]] double energy(const Vector&) const override { refuse(); }
-  void strain_force(const Vector&, const Vector&, Vector&) const override { refuse(); }
   [[nodiscard]] bool is_linear() const override { return true; }
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { refuse(); }
 

@@ -19,6 +19,8 @@ struct StepSolverOptions {
   SolverMethod method = SolverMethod::automatic;
   /// Residual force of the iterative method, relative to the forces of the step, in the energy norm.
   double tolerance = 1e-10;
+  /// Error of the increment of a step that Newton's method leaves, relative to the increment.
+  double newton_tolerance = 1e-8;
   /// Memory that factors may take, in bytes; 0: half of the machine's.
   double memory = 0.0;
   /// Includes all contact points in every contact problem, not only those that may touch. For comparisons.
