@@ -28,6 +28,10 @@ class CombinedGeometry final : public ContactGeometry {
   void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     for (const auto& part : parts_) part->update(displacement, time, start, rows);
   }
+  void prepare_update(const Vector& displacement, double time, const StepStart* start,
+                      ContactRows& rows) const override {
+    for (const auto& part : parts_) part->prepare_update(displacement, time, start, rows);
+  }
   void begin_step() const override {
     for (const auto& part : parts_) part->begin_step();
   }

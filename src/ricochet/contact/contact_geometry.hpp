@@ -29,9 +29,12 @@ class ContactGeometry {
   /// Normal at a node of the contact boundary; the initial one if it is constant.
   [[nodiscard]] virtual SpaceVector node_normal(Index entry, const Vector& displacement, double time) const = 0;
   /// Updates the rows to this displacement and time; rows that change receive a new revision. Points whose gap is large
-  /// compared with the changes of the gaps since the last update keep their rows. `start`: rows are those of the step
-  /// from there; null: those of the instant.
+  /// compared with the changes of the gaps since the last update may keep their rows. `start`: rows are those of the
+  /// step from there; null: those of the instant.
   virtual void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const = 0;
+  /// Records a displacement that the next update is not for, if points keep their rows: it shows how fast gaps change.
+  virtual void prepare_update(const Vector& /*displacement*/, double /*time*/, const StepStart* /*start*/,
+                              ContactRows& /*rows*/) const {}
   /// Begins a step, or begins it again, without frozen rows.
   virtual void begin_step() const {}
   /// Freezes the rows for the remainder of the step, so that gaps are linear: for iterations of a step that do

@@ -86,6 +86,11 @@ class CurvedContact final : public ContactGeometry {
     }
   }
 
+  void prepare_update(const Vector& displacement, double time, const StepStart* start,
+                      ContactRows& rows) const override {
+    update(displacement, time, start, rows);
+  }
+
   /// The torque on a rigid body is that of the force at the position of the point.
   void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {

@@ -58,6 +58,11 @@ class RotatingPairs final : public ContactGeometry {
     }
   }
 
+  void prepare_update(const Vector& displacement, double time, const StepStart* start,
+                      ContactRows& rows) const override {
+    update(displacement, time, start, rows);
+  }
+
   void add_couples(const Vector& displacement, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     const Index d = dimension();

@@ -100,6 +100,21 @@ double obstacle_error(const SemidiscreteProblem& problem, const StageSolution& s
   return error;
 }
 
+/// Stores the data from which the conditions are re-evaluated.
+void store_motion(const Vector& base, double time, const StepStart* start, Stage& stage) {
+  if (!stage.motion) stage.motion.emplace();
+  ContactMotion& motion = *stage.motion;
+  motion.displacement = base;
+  motion.time = time;
+  motion.reevaluates_obstacles = false;
+  if (start == nullptr) {
+    motion.start.resize(0);
+    return;
+  }
+  motion.start = start->displacement;
+  motion.start_time = start->time;
+}
+
 }  // namespace
 
 void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector& displacement,
@@ -119,18 +134,13 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   stage.conditions.gap.rounding = stage.rows->gap_rounding;
   stage.conditions.gap.factor = 1.0;
   set_eligible(problem, stage);
-  if (!problem.contact.follows_motion() && !problem.has_rotating_obstacles()) return;
-  if (!stage.motion) stage.motion.emplace();
-  ContactMotion& motion = *stage.motion;
-  motion.displacement = base;
-  motion.time = time;
-  motion.reevaluates_obstacles = false;
-  if (start == nullptr) {
-    motion.start.resize(0);
-    return;
-  }
-  motion.start = start->displacement;
-  motion.start_time = start->time;
+  if (problem.contact.follows_motion() || problem.has_rotating_obstacles()) store_motion(base, time, start, stage);
+}
+
+void prepare_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
+                            const StepStart* start) {
+  problem.contact.geometry->prepare_update(base, time, start, writable_rows(problem, stage));
+  store_motion(base, time, start, stage);
 }
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,

@@ -24,6 +24,11 @@ void evaluate_obstacle_velocity(const SemidiscreteProblem& problem, const Vector
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
                             const StepStart* start = nullptr);
 
+/// Begins the same conditions for gaps that are not linear, but does not evaluate them at δ = 0: after
+/// require_friction, linearize_contact completes the conditions of the stage at another increment.
+void prepare_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
+                            const StepStart* start = nullptr);
+
 /// Requires that points in contact at `displacement` and `time` do not approach their obstacle; all others carry
 /// no force: y = G (velocity + gap_factor δ) − the obstacle's velocity, eligible if the gap is not positive. `velocity`
 /// is a difference of displacements over `step`, which determines its rounding error. Projects `obstacle` onto the

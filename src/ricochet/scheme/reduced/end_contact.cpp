@@ -40,14 +40,21 @@ void StickingDrift::update_drift(const SemidiscreteProblem& problem, const Vecto
 }
 
 void EndContact::require(const SemidiscreteProblem& problem, ActingReaction acting, double step, const State& state,
-                         const Vector& end_displacement, StepEquations& equations, Stage& stage) {
+                         const Vector& end_displacement, StepEquations& equations, Stage& stage,
+                         const Vector* linear_about) {
   const StepStart start{state.displacement, state.time};
-  require_no_penetration(problem, end_displacement, state.time + step, stage, &start);
+  const bool is_linear_elsewhere = linear_about != nullptr && problem.contact.follows_motion();
+  const auto& require_gaps = is_linear_elsewhere ? prepare_no_penetration : require_no_penetration;
+  require_gaps(problem, end_displacement, state.time + step, stage, &start);
   stage.conditions.gap.factor = 2.0;
   equations.observe_step(problem, state.displacement, state.time, end_displacement, step, stage);
   rate_ = (end_displacement - state.displacement) / step;
   require_friction(problem, rate_, 2.0 / step, stage);
   stick_.require(problem, state, step, stage);
+  if (is_linear_elsewhere) {
+    linearize_contact(problem, *linear_about, stage);
+    stage.conditions.gap.rounding = stage.rows->gap_rounding;
+  }
   if (acting == ActingReaction::end) return;
   problem.gaps(state.displacement, state.time, stage.start.gap);
   stage.start.normal_reaction = state.forces.normal_reaction;

@@ -6,7 +6,6 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/scheme/reduced/massless_contact_step.hpp"
-#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 
@@ -113,12 +112,11 @@ void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, Actin
   const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
   lagged_.release();
-  contact_.require(problem, acting, step, state, end_, equations_, stage);
-  if (!problem.contact.follows_motion()) return;
-  // Conditions are linear about the end of the previous iteration: −m there, in place of δ = 0.
+  // Conditions that follow the motion are linear about the end of the previous iteration: −m there, in place of δ = 0.
   linearization_motion_.setZero(end_.size());
   for (const Index dof : problem.contact_dofs) linearization_motion_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
-  linearize_contact(problem, linearization_motion_, stage);
+  contact_.require(problem, acting, step, state, end_, equations_, stage, &linearization_motion_);
+  if (!problem.contact.follows_motion()) return;
   lagged_.replace_rows(linearization_motion_, stage);
 }
 
