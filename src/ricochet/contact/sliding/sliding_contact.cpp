@@ -235,7 +235,7 @@ class SlidingContact final : public ContactGeometry {
     views.has_start = true;
     views.any_depth.resize(views.at_start.size());
     for (std::size_t i = 0; i < views.any_depth.size(); ++i) views.any_depth[i] = views.at_start[i].faces ? 1 : 0;
-    views.has_gaps = false;
+    views.has_gaps = views.has_couples = false;
   }
 
   /// Finds the points that cannot come into contact in a step with the given largest
@@ -282,7 +282,7 @@ class SlidingContact final : public ContactGeometry {
       find_out_of_reach(k, largest_motion(pair, displacement, start->displacement));
     } else {
       views.any_depth.clear();
-      views.has_start = views.has_gaps = false;
+      views.has_start = views.has_gaps = views.has_couples = false;
       find_out_of_reach(k, std::numeric_limits<double>::infinity());
     }
     update_gap_views(k, displacement);
@@ -349,22 +349,17 @@ class SlidingContact final : public ContactGeometry {
                       const Vector& tangential, Vector& force) const {
     const SlidingPair& pair = *data_.pairs[k];
     PairViews& views = pair_views_[k];
-    if (views.is_apart) return;
-    const Index tangents = dimension() - 1;
-    left_out_.assign(pair.points().size(), 0);
-    bool any = false;
-    for (std::size_t i = 0; i < left_out_.size(); ++i) {
-      const Index point = number(k, i);
-      const bool acts = normal[point] != 0.0 ||
-                        (tangential.size() > 0 && !tangential.segment(point * tangents, tangents).isZero(0.0));
-      left_out_[i] = acts ? 0 : 1;
-      any = any || acts;
+    if (views.is_apart || !couples_.find_forces(pair.points(), normal, tangential, left_out_)) return;
+    // An iteration of a step begins at the place where the one before ended.
+    if (!views.has_couples_at(displacement, left_out_)) {
+      pair.compute_views(displacement, SlidingPair::Content::row, left_out_, views.any_depth, views.couples);
+      views.couples_at = displacement;
+      views.forceless = left_out_;
+      views.has_couples = true;
     }
-    if (!any) return;
-    pair.compute_views(displacement, SlidingPair::Content::row, left_out_, views.any_depth, views.other);
     for (std::size_t i = 0; i < left_out_.size(); ++i) {
-      if (left_out_[i] == 0 && views.other[i].faces)
-        couples_.add(number(k, i), views.other[i], displacement, rows, normal, tangential, force);
+      if (left_out_[i] == 0 && views.couples[i].faces)
+        couples_.add(number(k, i), views.couples[i], displacement, rows, normal, tangential, force);
     }
   }
 

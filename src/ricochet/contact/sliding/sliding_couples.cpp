@@ -1,8 +1,21 @@
 #include "ricochet/contact/sliding/sliding_couples.hpp"
 
+#include <algorithm>
+
 #include "ricochet/contact/sliding/rigid_part.hpp"
 
 namespace ricochet {
+
+bool SlidingCouples::find_forces(const std::vector<SlidingPair::Point>& points, const Vector& normal,
+                                 const Vector& tangential, std::vector<char>& forceless) const {
+  const Index tangents = nodes_.rows() - 1;
+  forceless.resize(points.size());
+  std::ranges::transform(points, forceless.begin(), [&](const SlidingPair::Point& point) -> char {
+    return normal[point.number] == 0.0 &&
+           (tangential.size() == 0 || tangential.segment(point.number * tangents, tangents).isZero(0.0));
+  });
+  return std::ranges::find(forceless, 0) != forceless.end();
+}
 
 void SlidingCouples::add(Index point, const SlidingView& view, const Vector& displacement, const ContactRows& rows,
                          const Vector& normal, const Vector& tangential, Vector& force) {

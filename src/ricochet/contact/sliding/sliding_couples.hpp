@@ -15,6 +15,9 @@ class SlidingCouples {
   /// `nodes`: reference positions of all nodes, d × count; kept by reference.
   explicit SlidingCouples(const Points& nodes) : nodes_(nodes) {}
 
+  /// Finds the points without a reaction, as flags. Returns false if there are no others.
+  [[nodiscard]] bool find_forces(const std::vector<SlidingPair::Point>& points, const Vector& normal,
+                                 const Vector& tangential, std::vector<char>& forceless) const;
   /// Adds the difference between the forces of a point at `displacement` and those of its rows.
   /// `view`: its view there, with rows.
   void add(Index point, const SlidingView& view, const Vector& displacement, const ContactRows& rows,
