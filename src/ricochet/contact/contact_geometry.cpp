@@ -56,6 +56,11 @@ class CombinedGeometry final : public ContactGeometry {
                    Vector& force) const override {
     for (const auto& part : parts_) part->add_couples(displacement, rows, normal, tangential, force);
   }
+  [[nodiscard]] long projection_count() const override {
+    long count = 0;
+    for (const auto& part : parts_) count += part->projection_count();
+    return count;
+  }
   [[nodiscard]] Index row_value_count() const override {
     Index count = 0;
     for (const auto& part : parts_) count += part->row_value_count();

@@ -56,6 +56,8 @@ class ContactGeometry {
                            const Vector& /*tangential*/, Vector& /*force*/) const {}
   /// Whether node_normal() of a node differs from the initial normal.
   [[nodiscard]] virtual bool has_node(Index entry) const = 0;
+  /// How often surfaces have been projected onto each other so far: most of the cost of pairs that slide far.
+  [[nodiscard]] virtual long projection_count() const { return 0; }
   /// Values that determine the rows in addition to the normals, a fixed number; none if rows
   /// are the trace times the normal.
   [[nodiscard]] virtual Index row_value_count() const { return 0; }

@@ -139,6 +139,12 @@ class SlidingContact final : public ContactGeometry {
       add_couples_of(k, displacement, rows, normal, tangential, force);
   }
 
+  [[nodiscard]] long projection_count() const override {
+    long count = 0;
+    for (const auto& pair : data_.pairs) count += pair->projection_count();
+    return count;
+  }
+
   /// Displacements from which rows were computed, at the end of a step and then at its start, followed by the selected
   /// points and the pairs that were skipped.
   [[nodiscard]] Index row_value_count() const override {

@@ -78,6 +78,7 @@ struct SlidingPair::Implementation {
   mutable FacetPoints points;
   mutable FacetMultipliers functions;
   mutable Matrix shapes, weighted;
+  mutable long projection_count = 0;
 
   explicit Implementation(Data of_data)
       : data(std::move(of_data)),
@@ -264,6 +265,7 @@ SlidingVector SlidingPair::normal(std::size_t point, const Vector& displacement)
 void SlidingPair::compute_views(const Vector& displacement, Content content, const std::vector<char>& left_out,
                                 const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
   const Implementation& own = *implementation_;
+  ++own.projection_count;
   own.surfaces.move(displacement);
   own.evaluated_displacement = displacement;
   for (std::size_t facet = 0; facet < own.normals.size(); ++facet)
@@ -282,6 +284,8 @@ void SlidingPair::compute_views(const Vector& displacement, Content content, con
     own.integrate_from(int(facet), content, left_out, any_depth, views);
   for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, content, views[i]);
 }
+
+long SlidingPair::projection_count() const { return implementation_->projection_count; }
 
 double SlidingPair::node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const {
   const Implementation& own = *implementation_;

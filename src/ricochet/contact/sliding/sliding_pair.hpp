@@ -100,6 +100,9 @@ class SlidingPair {
   void compute_views(const Vector& displacement, Content content, const std::vector<char>& left_out,
                      const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
 
+  /// Number of calls of compute_views() so far.
+  [[nodiscard]] long projection_count() const;
+
   /// Distance of a node of the own surface along a direction (unit, into its body); NaN if it faces nothing.
   [[nodiscard]] double node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const;
 
