@@ -20,11 +20,6 @@ bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector&
   return std::ranges::all_of(problem.contact_dofs, [&](Index dof) { return std::isfinite(increment[dof]); });
 }
 
-/// Number of times that a step without a solution is halved.
-constexpr int deepest_cut = 8;
-/// Level of parts from which the user is warned: the step then takes 2^k times as long.
-constexpr int short_parts = 5;
-
 constexpr const char* nameless = "this time scheme";
 
 }  // namespace
@@ -82,6 +77,7 @@ void Simulation::persist(const SnapshotVisitor& visit) {
   if (control_) control_->persist(visit.part("control"));
   visit("cut_steps", cut_steps_);
   visit("told_short_parts", short_parts_warned_);
+  part_lengths_.persist(visit.part("part_lengths"));
   persist_levels(visit);
 }
 
@@ -92,7 +88,7 @@ void Simulation::persist_levels(const SnapshotVisitor& visit) {
     numbers.push_back(number);
     if (&level == current_) current = number;
   }
-  visit("levels", numbers, {0, control_ ? control_->deepest() : deepest_cut});
+  visit("levels", numbers, {0, control_ ? control_->deepest() : PartLengths::deepest});
   visit("level", current);
   for (const int number : numbers) {
     const SnapshotVisitor saved = visit.part("solver").part(std::size_t(number));
@@ -280,81 +276,18 @@ void Simulation::end_part(const std::function<void(const State&)>& each_part) {
   if (each_part) each_part(state_);
 }
 
-const char* Simulation::failure_reason() const {
-  return has_tunnelled_                         ? "a node went through an obstacle"
-         : problem_.internal_force->is_linear() ? "the contact forces did not settle"
-                                                : "Newton's method found no solution";
-}
-
-/// Warns once in a run.
-void Simulation::warn_of_short_parts(int level) {
-  if (level < short_parts || std::exchange(short_parts_warned_, true)) return;
-  log::warning(fmt::format(
-      "step {} is computed in parts as short as 1/{} of it, and possibly shorter ones, since {} in longer ones: this "
-      "takes correspondingly longer, during which the progress does not advance, and it may still fail",
-      state_.step + 1, 1L << level, failure_reason()));
-}
-
-/// Parts have the lengths h 2^-k. After each part the longest one that fits into the remaining step is tried.
-void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
-  const char* const reason = failure_reason();
-  const State start = state_;
-  const EnergyAccount account = *account_;
-  std::vector<FreeMotion> bodies;
-  for (const auto& body : problem_.free_bodies) bodies.push_back(*body);
-  constexpr long whole = 1L << deepest_cut;
-  const auto fits = [](long done, int level) {
-    return done % (whole >> level) == 0 && done + (whole >> level) <= whole;
-  };
-  int level = 1;
-  for (long done = 0; done < whole;) {
-    use_level(level);
-    try {
-      take_step(level == deepest_cut);
-    } catch (const Error& problem) {
-      if (problem.kind() == ErrorKind::not_converged && level < deepest_cut) {
-        ++level;
-        warn_of_short_parts(level);
-        continue;
-      }
-      state_ = start;
-      for (std::size_t k = 0; k < bodies.size(); ++k) *problem_.free_bodies[k] = bodies[k];
-      use_level(0);  // enters a change of the step, unknown to the account of the start
-      account_ = std::make_unique<EnergyAccount>(account);
-      if (problem.kind() != ErrorKind::not_converged) throw;
-      throw Error(problem.kind(),
-                  fmt::format("{}; parts of the step as short as 1/{} of it were tried", problem.what(), whole));
-    }
-    done += whole >> level;
-    state_.time = start.time + whole_step_ * double(done) / double(whole);
-    end_part(each_part);
-    while (level > 1 && fits(done, level - 1)) --level;
-  }
-  use_level(0);
-  if (cut_steps_++ == 0)
-    log::info(fmt::format("step {} is computed in parts, since {} in the whole step", state_.step + 1, reason));
-}
-
 void Simulation::advance(const std::function<void(const State&)>& each_part) {
   double energy = 0.0;
-  bool in_parts = false;
+  bool is_whole = true;
   newton_iterations_ = 0;
   if (control_) {
     energy = take_controlled_step();
   } else {
-    try {
-      take_step(!scheme_.traits().supports_step_changes);
-    } catch (const Error& problem) {
-      const bool is_nonlinear = !problem_.internal_force->is_linear() || problem_.contact.follows_motion();
-      const bool may_cut = is_nonlinear && scheme_.traits().supports_step_changes;
-      if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
-      take_step_in_parts(each_part);
-      in_parts = true;
-    }
+    is_whole = take_fixed_step(each_part);
   }
   state_.step += 1;
   state_.time = control_ ? control_->time() : double(state_.step) * whole_step_;
-  if (!in_parts) end_part(each_part);
+  if (is_whole) end_part(each_part);
   if (control_) control_->watch(energy, problem_.ranks->sum(account_->method_energy(state_)));
 }
 

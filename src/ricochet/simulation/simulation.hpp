@@ -9,6 +9,7 @@
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/history/energy_account.hpp"
 #include "ricochet/simulation/monitor/tunnelling_watch.hpp"
+#include "ricochet/simulation/part_lengths.hpp"
 #include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -32,7 +33,8 @@ class Simulation : private StageSolve {
   /// Advances the state by one step. Throws Error(not_converged), which names the step and its time; the state is then
   /// that before the step, except if adaptive steps stop because the scheme has created most of the energy. At finite
   /// strain, or with contact that follows the motion, a step of fixed length without a solution is divided by halving
-  /// if the scheme can change its step length. Calls `each_part` after the step, or after each of its parts.
+  /// if the scheme can change its step length, and the next step begins with the length that this one needed. Calls
+  /// `each_part` after the step, or after each of its parts.
   void advance(const std::function<void(const State&)>& each_part = {});
 
   /// Changes the velocity of the body (per dof), as an instantaneous impulse would; the work of the loads then contains
@@ -69,6 +71,8 @@ class Simulation : private StageSolve {
   struct Level {
     std::unique_ptr<StepSolver> solver;
     std::vector<SolvedStage> stages;
+    bool has_failed =
+        false;  ///< the last attempts of this length found no solution, even with the tangent at the start
   };
   void persist(const SnapshotVisitor& visit);
   void persist_levels(const SnapshotVisitor& visit);
@@ -79,7 +83,9 @@ class Simulation : private StageSolve {
   void solve_step();
   void attempt_step();
   [[nodiscard]] const char* failure_reason() const;
-  void warn_of_short_parts(int level);
+  void warn_of_short_parts();
+  bool take_fixed_step(const std::function<void(const State&)>& each_part);
+  bool take_whole_step();
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;
   void end_part(const std::function<void(const State&)>& each_part);
@@ -106,7 +112,8 @@ class Simulation : private StageSolve {
   std::map<int, Level> levels_;  ///< by k, for steps of length H 2^-k; without control H is the whole step
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
-  double whole_step_;  ///< length, without control
+  double whole_step_;         ///< length, without control
+  PartLengths part_lengths_;  ///< without control
   long cut_steps_ = 0;
   bool short_parts_warned_ = false;
   std::vector<TunnellingWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
