@@ -82,15 +82,18 @@ void Simulation::persist(const SnapshotVisitor& visit) {
 }
 
 void Simulation::persist_levels(const SnapshotVisitor& visit) {
-  std::vector<int> numbers;
+  std::vector<int> numbers, failed;
   int current = 0;
   for (const auto& [number, level] : levels_) {
     numbers.push_back(number);
+    failed.push_back(level.has_failed ? 1 : 0);
     if (&level == current_) current = number;
   }
   visit("levels", numbers, {0, control_ ? control_->deepest() : PartLengths::deepest});
   visit("level", current);
-  for (const int number : numbers) {
+  visit("failed_levels", failed, {0, 1}, Index(numbers.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const int number = numbers[i];
     const SnapshotVisitor saved = visit.part("solver").part(std::size_t(number));
     if (visit.loads()) {
       if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
@@ -100,6 +103,7 @@ void Simulation::persist_levels(const SnapshotVisitor& visit) {
       make_level(number, stored);
     }
     levels_.at(number).solver->persist(saved);
+    levels_.at(number).has_failed = failed[i] == 1;
   }
   if (!visit.loads()) return;
   visit.require(levels_.contains(current), "level", "is none of the saved step lengths");
@@ -207,17 +211,23 @@ void Simulation::take_step(bool is_shortest) {
 }
 
 /// Leaves step and time unchanged. If no solution is found, the operators may belong to a configuration too far away:
-/// the step is attempted again with those of the tangent at its start.
+/// the step is attempted again with those of the tangent at its start. Where steps of this length have just had no
+/// solution with these either, their operators are older still, and the only attempt begins with the tangent.
 void Simulation::solve_step() {
-  try {
-    attempt_step();
-    return;
-  } catch (const Error& problem) {
-    if (problem.kind() != ErrorKind::not_converged || problem_.internal_force->is_linear()) throw;
-    log::debug(fmt::format("{}: attempting the step again, with the tangent at its start", problem.what()));
+  Level& level = *current_;
+  if (!level.has_failed) {
+    try {
+      attempt_step();
+      return;
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged || problem_.internal_force->is_linear()) throw;
+      log::debug(fmt::format("{}: attempting the step again, with the tangent at its start", problem.what()));
+    }
   }
+  level.has_failed = true;
   renew_operators(state_.displacement, state_.displacement);
   attempt_step();
+  level.has_failed = false;
 }
 
 /// Attempts the step once.
@@ -245,8 +255,14 @@ void Simulation::attempt_step() {
 void Simulation::use_level(int number) {
   if (scheme_.step() != length_of(number))
     account_->change_step(state_, [&] { scheme_.change_step(problem_, length_of(number)); });
-  const auto found = levels_.find(number);
-  current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
+  if (const auto found = levels_.find(number); found != levels_.end()) {
+    current_ = &found->second;
+    return;
+  }
+  // Where those of another length have failed, operators of the undeformed body would fail, too.
+  const bool has_failed = current_->has_failed;
+  current_ = &make_level(number, options_);
+  current_->has_failed = has_failed;
 }
 
 /// The impulse is not used by the equations; it serves those who monitor the state.
