@@ -43,6 +43,9 @@ class CombinedGeometry final : public ContactGeometry {
   void end_step() const override {
     for (const auto& part : parts_) part->end_step();
   }
+  [[nodiscard]] bool is_frozen() const override {
+    return std::ranges::any_of(parts_, [](const auto& part) { return part->is_frozen(); });
+  }
   [[nodiscard]] bool has_frozen() const override {
     return std::ranges::any_of(parts_, [](const auto& part) { return part->has_frozen(); });
   }

@@ -42,6 +42,8 @@ class ContactGeometry {
   /// freeze, or rows are already frozen.
   virtual bool freeze() const { return false; }
   virtual void end_step() const {}
+  /// Whether rows are frozen in the present step.
+  [[nodiscard]] virtual bool is_frozen() const { return false; }
   /// Whether rows were frozen in some step of the run so far.
   [[nodiscard]] virtual bool has_frozen() const { return false; }
   /// Adds to the gaps at the end of a step the penetration of points at its start. Steps with frozen rows leave it

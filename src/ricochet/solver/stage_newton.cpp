@@ -79,7 +79,9 @@ void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLin
   before_ = total_;
   int iterations = 0;
   while (true) {
+    const bool was_frozen = has_frozen_rows();
     solve_linear(stage, solution);
+    if (has_frozen_rows() != was_frozen) acceleration_.restart();  // corrections are those of another map from now on
     iterations += solution.iterations;
     const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
                                                              : std::numeric_limits<double>::infinity();

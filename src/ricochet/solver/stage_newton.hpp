@@ -29,6 +29,9 @@ class StageNewton {
   void linearize(const OperatorCoefficients& coefficients, Stage& stage);
   void correct(const Vector& correction);
   void update_internal_force(double factor);
+  [[nodiscard]] bool has_frozen_rows() const {
+    return problem_.contact.follows_motion() && problem_.contact.geometry->is_frozen();
+  }
   /// Evaluates f less the follower loads.
   void evaluate(const Vector& displacement, Vector& force);
 

@@ -142,6 +142,25 @@ TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
   }
 }
 
+TEST(SlidingContact, RowsOfAStepAreFrozenUntilItEnds) {
+  const CaseRun run = sled_of({CellShape::triangle, "p1", 2});
+  const SemidiscreteProblem& problem = run.problem();
+  const ContactGeometry& geometry = *problem.contact.geometry;
+  const Vector first = some_slide(problem, 3, 0.01, 0.1), second = some_slide(problem, 4, 0.01, 0.2);
+  const StepStart start{first, 0.0};
+  geometry.begin_step();
+  ContactRows rows = sled_rows(problem, second, &start);
+  EXPECT_FALSE(geometry.is_frozen());
+  EXPECT_TRUE(geometry.freeze());
+  EXPECT_TRUE(geometry.is_frozen());
+  EXPECT_FALSE(geometry.freeze());
+  const Matrix before = rows.gap_operator;
+  geometry.update(some_slide(problem, 5, 0.01, 0.3), 0.0, &start, rows);
+  EXPECT_EQ(Matrix(rows.gap_operator), before);
+  geometry.end_step();
+  EXPECT_FALSE(geometry.is_frozen());
+}
+
 /// Rows rebuilt from their stored positions have the same bits.
 TEST(SlidingContact, RowsAreRestored) {
   const CaseRun run = sled_of({CellShape::triangle, "p1", 2});

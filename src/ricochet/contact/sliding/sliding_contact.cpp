@@ -107,6 +107,7 @@ class SlidingContact final : public ContactGeometry {
     is_frozen_ = false;
     if (is_step_ && !has_warned_) warn_of_long_step();
   }
+  [[nodiscard]] bool is_frozen() const override { return is_frozen_; }
   [[nodiscard]] bool has_frozen() const override { return has_frozen_; }
 
   void allow_overlap(Vector& gap) const override {
