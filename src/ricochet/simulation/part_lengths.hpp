@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <array>
 
 #include "ricochet/base/snapshot.hpp"
 
@@ -34,9 +34,12 @@ class PartLengths {
  private:
   int level_ = 0;
   long done_ = 0;
-  // By level, except the deepest:
-  std::vector<long> wait_ = std::vector<long>(deepest, 0);  ///< length to be solved before such a part is attempted
-  std::vector<int> pause_ = std::vector<int>(deepest, 1);   ///< pause after its next failure, in its own lengths
+  /// Of a level, except the deepest.
+  struct Attempts {
+    long wait = 0;  ///< length to be solved before such a part is attempted
+    int pause = 1;  ///< pause after its next failure, in its own lengths
+  };
+  std::array<Attempts, deepest> attempts_;
 };
 
 }  // namespace ricochet
