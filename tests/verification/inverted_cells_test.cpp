@@ -25,6 +25,7 @@ class LostStages final : public StageSolve {
     return solution_[0];
   }
   [[nodiscard]] double newton_tolerance() const override { return 1e-9; }
+  [[nodiscard]] double renewal_price() const override { return 10.0; }
   void rotate_operators(const Vector&) override {}
   void renew_operators(const Vector&, const Vector&) override {}
 

@@ -15,6 +15,18 @@ ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector
 
 ElasticCells::~ElasticCells() = default;
 
+double ElasticCells::size() const {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    double sum = 0.0;
+    for (std::size_t block = 0; block < body_.mesh->cells.size(); ++block) {
+      const KernelBlock<d>& own = blocks<d>().all[block];
+      sum += double(body_.mesh->cells[block].size()) * own.points * own.nodes * d;
+    }
+    return sum;
+  });
+}
+
 SparseMatrix ElasticCells::tangent(const Vector& displacement, double step) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;

@@ -59,6 +59,8 @@ class ElasticCells {
   /// Raises the rules of the cells whose strain changes more than their rule is for. Returns whether any was raised.
   bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
+  /// Number of components of nodes at quadrature points: Σ over cells points × nodes × dimension.
+  [[nodiscard]] double size() const;
   /// Tangent, exactly symmetric, on the pattern of the graph. An empty displacement is zero. With a `step` it includes
   /// the tangent of the branches over a step of this length, at zero stress of theirs.
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement, double step = 0.0) const;

@@ -62,6 +62,11 @@ void FiniteElasticity::path_force(const Vector& middle, const Vector& increment,
   condense(force);
 }
 
+double FiniteElasticity::estimated_seconds() const {
+  constexpr double per_number = 1.3e-9;  // per component of a node and quadrature point
+  return per_number * cells_.size();
+}
+
 PathRules FiniteElasticity::path_rules() const {
   return PathRules(std::size_t(body_.mesh->cell_count()), PathRule::two_points);
 }

@@ -16,6 +16,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   void evaluate(const Vector& displacement, Vector& force) const override;
   void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
   [[nodiscard]] PathRules path_rules() const override;
+  [[nodiscard]] double estimated_seconds() const override;
   bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override;
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;

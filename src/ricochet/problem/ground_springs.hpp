@@ -17,6 +17,7 @@ class GroundSprings final : public InternalForce {
   [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
   void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
   [[nodiscard]] PathRules path_rules() const override { return bodies_->path_rules(); }
+  [[nodiscard]] double estimated_seconds() const override { return bodies_->estimated_seconds(); }
   bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override {
     return bodies_->raise_path_rules(middle, increment, rules);
   }

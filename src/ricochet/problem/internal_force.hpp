@@ -34,6 +34,9 @@ class InternalForce {
   /// whose strain changes more. Returns whether any was raised. Only for nonlinear forces.
   [[nodiscard]] virtual PathRules path_rules() const;
   virtual bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const;
+  /// Estimated time of an evaluation of the force, in seconds on one core of a common machine. It is a count, so that
+  /// decisions do not depend on the load of the machine. Only for nonlinear forces.
+  [[nodiscard]] virtual double estimated_seconds() const;
   /// Returns the contribution of the cells at some nodes (per node, 1: included): their forces and the energy of these
   /// cells alone. Only for nonlinear forces.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const;

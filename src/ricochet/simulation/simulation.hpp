@@ -98,6 +98,7 @@ class Simulation : private StageSolve {
   Stage& stage(std::size_t number) override;
   [[nodiscard]] double newton_tolerance() const override { return options_.newton_tolerance; }
   const StageSolution& solve(std::size_t number) override;
+  [[nodiscard]] double renewal_price() const override { return current_->solver->renewal_price(); }
   void rotate_operators(const Vector& displacement) override { current_->solver->rotate_operators(displacement); }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
     current_->solver->renew_operators(displacement, of_contact_nodes);

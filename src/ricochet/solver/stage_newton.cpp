@@ -69,12 +69,12 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
   stage.conditions.slip.offset = conditions_.slip.offset + stage.conditions.slip.factor * stage.conditions.slip.offset;
 }
 
-void StageNewton::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
-                        Stage& stage, StageSolution& solution) {
+void StageNewton::solve(const OperatorCoefficients& coefficients, double renewal_price, const SolveLinear& solve_linear,
+                        const Renew& renew, Stage& stage, StageSolution& solution) {
   store_stage(stage);
   total_.setZero(problem_.dof_count());
   const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.displacement.lpNorm<Eigen::Infinity>();
-  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size, renewal_price);
   acceleration_.restart();
   before_ = total_;
   int iterations = 0;

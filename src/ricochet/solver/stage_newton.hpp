@@ -20,9 +20,10 @@ class StageNewton {
   /// Solvers of the linear stage, and of a new factor at a displacement.
   using SolveLinear = std::function<void(Stage&, StageSolution&)>;
   using Renew = std::function<void(const Vector& displacement)>;
-  /// Leaves the stage as in the last iteration. Throws Error(not_converged).
-  void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
-             Stage& stage, StageSolution& solution);
+  /// `renewal_price`: number of iterations that take as long as `renew`. Leaves the stage as in the last iteration.
+  /// Throws Error(not_converged).
+  void solve(const OperatorCoefficients& coefficients, double renewal_price, const SolveLinear& solve_linear,
+             const Renew& renew, Stage& stage, StageSolution& solution);
 
  private:
   void store_stage(const Stage& stage);
@@ -37,7 +38,7 @@ class StageNewton {
 
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
-  AndersonAcceleration acceleration_{8};
+  AndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   Vector total_, before_, displacement_, force_, inertial_force_, damping_force_, zero_motion_, follower_load_;
   // Data of the stage at δ = 0:
   ForceLinearization linearization_;

@@ -13,6 +13,7 @@
 #include "ricochet/solver/gathered/gathered_stage.hpp"
 #include "ricochet/solver/iterative_stage.hpp"
 #include "ricochet/solver/stage_newton.hpp"
+#include "ricochet/solver/step_estimate.hpp"
 #include "ricochet/solver/tangent_iterations.hpp"
 
 namespace ricochet {
@@ -58,6 +59,7 @@ class StagesStepSolver final : public StepSolver {
         add_stage(problem, coefficients, options);
       }
     }
+    find_renewal_price();
   }
 
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
@@ -69,7 +71,7 @@ class StagesStepSolver final : public StepSolver {
     if (stage.linearization.displacement.size() > 0) {
       rotate_operators(stage.linearization.displacement);
       newton_.solve(
-          operators_[number], solve_linear,
+          operators_[number], renewal_price_, solve_linear,
           [this](const Vector& displacement) { renew_operators(displacement, displacement); }, stage, solution);
     } else {
       solve_linear(stage, solution);
@@ -92,6 +94,7 @@ class StagesStepSolver final : public StepSolver {
     frame_->restart(factor_displacement_);
     frame_->follow(displacement);
   }
+  [[nodiscard]] double renewal_price() const override { return renewal_price_; }
   void rotate_operators(const Vector& displacement) override {
     if (frame_) frame_->follow(displacement);
   }
@@ -213,8 +216,23 @@ class StagesStepSolver final : public StepSolver {
     methods_.push_back(chosen);
   }
 
+  /// Counts at fixed rates, so that results do not depend on the load of the machine.
+  void find_renewal_price() {
+    if (problem_.internal_force->is_linear()) return;
+    constexpr double forces_per_iteration = 3.0, forces_per_tangent = 30.0;
+    const double force = problem_.internal_force->estimated_seconds();
+    double factors = forces_per_tangent * force, iteration = forces_per_iteration * force;
+    for (const ChosenMethod& chosen : methods_) {
+      factors += chosen.predicted_operations / estimated_operations_per_second;
+      iteration += 2.0 * sizeof(double) * chosen.predicted_entries / estimated_bytes_per_second;
+    }
+    renewal_price_ = factors / iteration;
+    log::debug(fmt::format("new factors of all stages cost as much as {:.3g} iterations", renewal_price_));
+  }
+
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
+  double renewal_price_ = 0.0;
   SharedContact shared_;
   std::unique_ptr<CorotatedFrame> frame_;  ///< null if the internal force is linear
   Vector factor_displacement_,

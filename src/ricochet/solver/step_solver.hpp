@@ -26,6 +26,8 @@ class StepSolver {
   /// forces. If some operator is not positive definite there, all are made without the pressure, or at half of the
   /// displacement, or finally for the undeformed body, rotated with the bodies.
   virtual void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) = 0;
+  /// Number of iterations of Newton's method that take as long as new factors of all stages, by counted costs.
+  [[nodiscard]] virtual double renewal_price() const = 0;
   /// For a nonlinear internal force: rotates the operators with bodies at this displacement. (solve() does so itself
   /// for a stage with a linearization.displacement.)
   virtual void rotate_operators(const Vector& displacement) = 0;

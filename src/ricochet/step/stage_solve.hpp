@@ -23,6 +23,8 @@ class StageSolve {
   // For a nonlinear internal force, with displacements per dof:
   /// Rotates the operators with the bodies at this displacement.
   virtual void rotate_operators(const Vector& displacement) = 0;
+  /// Number of iterations of Newton's method that take as long as renew_operators(), by counted costs.
+  [[nodiscard]] virtual double renewal_price() const = 0;
   /// Refactorizes the operators with the tangent at `displacement`, those of contact nodes alone with the tangent at
   /// `of_contact_nodes`. If some operator is not positive definite there, all are made without the stiffness of loads
   /// that follow the surface, or at half of both displacements, or finally for the undeformed body.

@@ -12,13 +12,15 @@ struct NewtonThresholds {
   double max_rounding = 100.0;     ///< correction in that situation, relative to the rounding of the positions
   double stalled_rate = 0.7;       ///< rate from which on rounding may be the reason
   double slow_rate = 0.5;          ///< rate above which an iteration is slow
-  int max_slow = 3;                ///< slow iterations before a new factorization
-  int max_slow_accelerated = 15;   ///< slow iterations before one if the iterations are accelerated
+  int max_slow = 3;                ///< slow iterations with a new factorization before they are accelerated
   double divergence = 1e3;         ///< largest correction, relative to the least one
-  int max_growing = 2;             ///< growing corrections in a row before the iterations are accelerated
-  int max_iterations = 60;         ///< iterations with one factorization
-  int helpful_renewals = 3;        ///< factorizations that slow iterations may request
-  int max_renewals = 6;            ///< factorizations before a solution is given up
+  double near = 0.2;           ///< correction, relative to the increment, from which on decreasing ones are accelerated
+  int max_growing = 2;         ///< growing corrections in a row before the iterations are accelerated
+  int stored_iterations = 20;  ///< which accelerated ones combine
+  double renewed_rate = 0.2;   ///< usual rate after a new factorization
+  int max_iterations = 60;     ///< iterations with one factorization
+  int helpful_renewals = 3;    ///< factorizations that slow iterations may request
+  int max_renewals = 6;        ///< factorizations before a solution is given up
 };
 
 /// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp).

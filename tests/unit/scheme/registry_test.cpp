@@ -82,6 +82,7 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
     Stage& stage(std::size_t) override { throw std::logic_error("it has no stage"); }
     const StageSolution& solve(std::size_t) override { throw std::logic_error("it has no stage"); }
     double newton_tolerance() const override { return 1e-9; }
+    double renewal_price() const override { return 10.0; }
     void rotate_operators(const Vector&) override {}
     void renew_operators(const Vector&, const Vector&) override {}
   } stages;

@@ -58,7 +58,7 @@ TEST(StageNewton, AcceleratesAnewWithRowsThatFreeze) {
   };
   StageSolution solution;
   StageNewton(problem).solve(
-      {.mass = 1.0, .stiffness = 0.0, .damping = 0.0}, solve_linear, [](const Vector&) {}, stage, solution);
+      {.mass = 1.0, .stiffness = 0.0, .damping = 0.0}, 10.0, solve_linear, [](const Vector&) {}, stage, solution);
   geometry.end_step();
   const auto distance_from_plain = [&](int round) {
     const auto k = std::size_t(round);

@@ -220,7 +220,7 @@ void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReactio
   evaluate(problem, step, state);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                       (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()),
-                  stages.newton_tolerance());
+                  stages.renewal_price(), stages.newton_tolerance());
   Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
   while (true) {
     const StageSolution& solution = solve_iteration(problem, acting, step, state, stages);

@@ -138,7 +138,7 @@ class FiniteStrainStep {
   LaggedRows lagged_;    ///< for rows that follow the motion
   Reactions reactions_;  ///< of the previous iteration in this step, if any
   bool has_reactions_ = false;
-  AndersonAcceleration acceleration_{8};
+  AndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   StepEquations equations_;
   StepLoads loads_;
   StepCorrections corrections_;

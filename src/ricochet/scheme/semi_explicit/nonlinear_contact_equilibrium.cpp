@@ -98,7 +98,8 @@ const StageSolution* NonlinearContactEquilibrium::solve(const SemidiscreteProble
     stage.right_hand_side.force.setZero(problem.dof_count());
   stage.right_hand_side.prescribed.setZero(
       problem.supports.size());  // supported nodes are at their prescribed displacements
-  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)),
+                  stages.renewal_price());
   moved_ = false;
   point_.resize(Index(problem.contact_dofs.size()));
   image_.resize(point_.size());
