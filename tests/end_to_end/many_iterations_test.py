@@ -12,7 +12,7 @@ Mesh.MeshSizeMin = 0.8;
 Physical Surface("ring") = {1};
 Physical Curve("skin") = {1};
 """
-# Rubber that is squeezed between two plates, by three hundredths of its height in a step.
+# Rubber that is squeezed between two plates, by sixteen thousandths of its height in a step.
 RING = """[mesh]
 file = "ring.geo"
 degree = 2
@@ -22,7 +22,7 @@ density = 1.1e-9
 law = "mooney-rivlin"
 c10 = 0.4
 c01 = 0.1
-bulk_modulus = 100.0
+bulk_modulus = 1000.0
 [obstacle.bottom]
 type = "plane"
 point = [0, 0]
@@ -31,7 +31,7 @@ normal = [0, 1]
 type = "plane"
 point = [0, 5.0]
 normal = [0, -1]
-motion = ["0", "-40*t"]
+motion = ["0", "-20*t"]
 [[contact]]
 group = "skin"
 obstacle = "bottom"
@@ -42,11 +42,13 @@ obstacle = "top"
 friction = 0.3
 [time]
 step = 4e-3
-end = 0.024
+end = 0.04
+[solver]
+newton_tolerance = 1e-13
 [output]
 fields_every = 0
 """
-WARNING = r"Newton's method has needed more than 200 iterations in each of 3 steps"
+WARNING = r"Newton's method has needed more than 200 iterations in each of [3-9] steps"
 EXPLICIT = {"time.scheme": "semi-explicit", "mass.type": "equivalent-lumped"}
 
 
@@ -69,7 +71,7 @@ class ManyIterations(TestCase):
         self.assertLess(max(history["newton_rounds"]), 100)
 
     def test_a_case_that_it_does_not_support(self):
-        relaxing = RING.replace("bulk_modulus = 100.0", "bulk_modulus = 100.0\nrelaxation = { modulus = [0.2], time = [1.0] }")
+        relaxing = RING.replace("bulk_modulus = 1000.0", "bulk_modulus = 1000.0\nrelaxation = { modulus = [0.2], time = [1.0] }")
         said, _ = self.squeeze(relaxing)
         self.assertRegex(said, WARNING + r".* does not support this case: .*relax")
 

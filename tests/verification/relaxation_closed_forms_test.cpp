@@ -23,7 +23,8 @@ std::string held_case(const std::string& law, const std::string& end_motion, dou
   };
   return "[mesh]\nfile = \"" + block(2) + "\"\n" + material(law, branches, 1e-10) + support("left", "x", "0") +
          support("right", "x", end_motion) + support("bottom", "y", "0") + support("top", "y", "0") +
-         fmt::format("[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n", scheme, step, end);
+         fmt::format("[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n[solver]\nnewton_tolerance = 1e-13\n", scheme, step,
+                     end);
 }
 
 /// Stress σ_xx of that block: F S_xx.

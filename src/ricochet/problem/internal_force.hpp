@@ -35,8 +35,8 @@ class InternalForce {
   [[nodiscard]] virtual PathRules path_rules() const;
   virtual bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const;
   /// Estimated time of an evaluation of the force, in seconds on one core of a common machine. It is a count, so that
-  /// decisions do not depend on the load of the machine. Only for nonlinear forces.
-  [[nodiscard]] virtual double estimated_seconds() const;
+  /// decisions do not depend on the load of the machine; 0 if unknown.
+  [[nodiscard]] virtual double estimated_seconds() const { return 0.0; }
   /// Returns the contribution of the cells at some nodes (per node, 1: included): their forces and the energy of these
   /// cells alone. Only for nonlinear forces.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> restricted_to(const std::vector<char>& nodes) const;

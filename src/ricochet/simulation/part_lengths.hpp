@@ -34,7 +34,7 @@ class PartLengths {
  private:
   int level_ = 0;
   long done_ = 0;
-  /// Of a level, except the deepest.
+  /// Attempts at parts of a level, except the deepest.
   struct Attempts {
     long wait = 0;  ///< length to be solved before such a part is attempted
     int pause = 1;  ///< pause after its next failure, in its own lengths

@@ -179,12 +179,13 @@ bool FiniteStrainStep::accept(const State& state, double step, double defect, do
   // releases or absorbs is exchanged with the motion.
   const bool is_short = step <= thresholds_.short_part * whole_step_;
   const double most = is_short ? thresholds_.max_snapped : thresholds_.max_corrected;
-  if (std::abs(defect) > most ||
-      (!is_corrected && defect > std::max(part_ * thresholds_.max_defect, thresholds_.tolerance)))
+  // Reactions of the end that act over a step may lose energy, others conserve it.
+  const double gained = end_weight_ > 0.0 ? defect : std::abs(defect);
+  if (!is_corrected && gained > thresholds_.near_rounding && progress_.tighten()) return false;
+  if (std::abs(defect) > most || (!is_corrected && gained > part_ * thresholds_.max_defect))
     throw Error(ErrorKind::not_converged,
                 fmt::format("the step would {} {:.2g} of the energy, as strains change too much in it",
                             defect > 0.0 ? "create" : "lose", std::abs(defect)));
-  if (!is_corrected && defect > thresholds_.near_rounding && progress_.tighten()) return false;
   if (is_corrected) {
     velocity_change_ += velocity_correction_->value();
     end_velocity_ += velocity_correction_->value();
