@@ -47,7 +47,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   path_rules_ = lowest_rules_;
   path_increment_ = 2.0 * (end_ - middle_);
   problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
-  raises_ = 0;
+  looks_ = 0;
   part_ = std::clamp(step / whole_step_, thresholds_.min_part, 1.0);
   has_reactions_ = false;
   acceleration_.restart();
@@ -229,9 +229,11 @@ void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReactio
     if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::proceed) accelerate(problem, state);
     evaluate_with_halving(problem, step, state);
     const bool is_done = advice == NewtonProgress::Advice::done;
-    if ((is_done || iteration.correction <= thresholds_.near_solution * iteration.increment) && raise_rules(problem)) {
+    const bool is_near = iteration.correction <= thresholds_.near_solution * iteration.increment;
+    if ((is_done || is_near) && raise_rules(problem, is_done)) {
       evaluate(problem, step, state);
       progress_.restart();
+      acceleration_.restart();
       continue;
     }
     if (!is_done) {

@@ -94,7 +94,7 @@ class FiniteStrainStep {
   void find_imbalance(const SemidiscreteProblem& problem, double step, const State& state, Vector& force);
   const StageSolution& solve_iteration(const SemidiscreteProblem& problem, ActingReaction acting, double step,
                                        const State& state, StageSolve& stages);
-  [[nodiscard]] bool raise_rules(const SemidiscreteProblem& problem);
+  [[nodiscard]] bool raise_rules(const SemidiscreteProblem& problem, bool is_solution);
   /// Holds the present pairs of facets until the end of the step. Returns false if there are none, or if they are held
   /// already.
   [[nodiscard]] bool freeze_pairs(const SemidiscreteProblem& problem);
@@ -124,13 +124,11 @@ class FiniteStrainStep {
   void throw_if_inverted(const SemidiscreteProblem& problem);
   void evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state);
 
-  static constexpr int max_raises = 2;
-
   EnergyThresholds thresholds_;
   std::unique_ptr<FlightPrediction> flight_;
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   PathRules lowest_rules_, path_rules_;                 ///< of D, the latter fixed while the equations are solved
-  int raises_ = 0;                                      ///< of these rules in this step
+  int looks_ = 0;                                       ///< at changes of strains in this step
   NewtonProgress progress_;
   std::unique_ptr<VelocityCorrection> velocity_correction_;
   bool snap_logged_ = false;

@@ -36,9 +36,10 @@ void FiniteStrainStep::throw_if_inverted(const SemidiscreteProblem& problem) {
 }
 
 /// Raises the rules of path_force() once near the solution and once at it. Returns whether the force has changed.
-bool FiniteStrainStep::raise_rules(const SemidiscreteProblem& problem) {
-  if (raises_ == max_raises) return false;
-  ++raises_;
+bool FiniteStrainStep::raise_rules(const SemidiscreteProblem& problem, bool is_solution) {
+  const int looks = is_solution ? 2 : 1;
+  if (looks_ >= looks) return false;
+  looks_ = looks;
   path_increment_ = 2.0 * (end_ - middle_);
   return problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
 }
