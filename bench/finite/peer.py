@@ -10,7 +10,8 @@ import problems
 from measurement import history, processor_seconds, record_of_peer
 
 HERE = pathlib.Path(__file__).resolve().parent
-FIELDS = '["displacement", "contact_pressure", "friction_traction"]'
+# GetFEM's contact forces are compared with tractions per undeformed area.
+FIELDS = '["displacement", "nominal_contact_pressure", "nominal_friction_traction"]'
 
 
 def numbers(points, of):
@@ -28,7 +29,7 @@ def arrays(case, directory, dimension):
         points, cells = file["mesh/nodes"][:, :dimension], file["mesh/cells"][:]
         frames = [file["frames"][name] for name in sorted(file["frames"])]
         take = lambda name: np.array([frame[name][:] for frame in frames if name in frame])
-        return points, cells, take("displacement")[..., :dimension], take("contact_pressure"), take("friction_traction")[..., :dimension]
+        return points, cells, take("displacement")[..., :dimension], take("nominal_contact_pressure"), take("nominal_friction_traction")[..., :dimension]
 
 
 def largest_stretch(points, cells, displacement):

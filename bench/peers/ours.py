@@ -20,7 +20,7 @@ def run(case, directory, settings, fields=True, limit=None):
     seconds."""
     settings = {"output.fields_every": 1 if fields else 0, **settings}
     if fields:
-        settings["output.fields"] = '["displacement", "velocity", "acceleration", "contact_pressure", "friction_traction"]'
+        settings.setdefault("output.fields", '["displacement", "velocity", "acceleration", "contact_pressure", "friction_traction"]')
     command = [str(PROGRAM), "run", str(case), "-o", str(directory), "--force", "--quiet", "--threads", "1"]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
