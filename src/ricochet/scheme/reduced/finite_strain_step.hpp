@@ -57,15 +57,13 @@ namespace ricochet {
 
 /// Thresholds of the balance of energy; defects are relative to kinetic and elastic energy.
 struct EnergyThresholds {
-  double tolerance = 1e-15;        ///< defect that velocities need not correct
-  double near_rounding = 1e-12;    ///< admissible defect that they cannot correct, if more iterations do not help
-  double near_solution = 1e-2;     ///< correction relative to the increment, at which changes of strains are known
-  double max_defect = 1e-8;        ///< of a full step, uncorrected; of a substep times its part of the full step,
-  double min_part = 0.1;           ///< which counts as at least this
-  double max_corrected = 1e-2;     ///< up to which velocities compensate a defect
-  double max_snapped = 1e-2;       ///< likewise in a substep below short_part, where contact nodes snap to another
-  double short_part = 1.0 / 64.0;  ///< equilibrium: shorter ones would have the same defect
-  int max_pair_iterations = 80;    ///< iterations after which pairs of facets that keep changing are frozen
+  double tolerance = 1e-15;      ///< defect that velocities need not correct
+  double near_rounding = 1e-12;  ///< admissible defect that they cannot correct, if more iterations do not help
+  double near_solution = 1e-2;   ///< correction relative to the increment, at which changes of strains are known
+  double max_defect = 1e-8;      ///< of a full step, uncorrected; of a substep times its part of the full step,
+  double min_part = 0.1;         ///< which counts as at least this
+  double max_corrected = 1e-2;   ///< up to which velocities compensate a defect
+  int max_pair_iterations = 80;  ///< iterations after which pairs of facets that keep changing are frozen
 };
 
 class FiniteStrainStep {
@@ -117,7 +115,7 @@ class FiniteStrainStep {
   [[nodiscard]] double find_dissipation(const SemidiscreteProblem& problem, double step, const State& state,
                                         const StageSolution& solution);
   [[nodiscard]] double energy_defect(const SemidiscreteProblem& problem, double step, double kinetic_change);
-  [[nodiscard]] bool accept(const State& state, double step, double defect, double dissipation, double size);
+  [[nodiscard]] bool accept(double defect, double dissipation, double size);
   [[nodiscard]] BranchStep branch_step(double step, const State& state) const;
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
@@ -131,7 +129,6 @@ class FiniteStrainStep {
   int looks_ = 0;                                       ///< at changes of strains in this step
   NewtonProgress progress_;
   std::unique_ptr<VelocityCorrection> velocity_correction_;
-  bool snap_logged_ = false;
   EndContact contact_;
   LaggedRows lagged_;    ///< for rows that follow the motion
   Reactions reactions_;  ///< of the previous iteration in this step, if any
@@ -146,7 +143,6 @@ class FiniteStrainStep {
   double energy_ = 0.0, energy_start_ = 0.0, end_weight_ = 0.0;
   double whole_step_ = 0.0;                        ///< length of a full step
   double part_ = 1.0;                              ///< fraction of it that this step covers
-  double obstacle_work_ = 0.0;                     ///< of ρ̄ on the motion of the obstacles
   double work_of_mean_ = 0.0, work_at_end_ = 0.0;  ///< ρ̄·HΔ and ρ·HΔ, less the obstacles' motion
   Vector base_, middle_, end_, increment_, force_, end_force_, end_contact_force_, mean_contact_force_;
   Vector path_increment_;        ///< u₁ − u⁺

@@ -51,8 +51,8 @@ void FiniteStrainStep::find_residual(const SemidiscreteProblem& problem, double 
     };
     add(solution.acting_normal(), solution.acting_tangential(), mean_contact_force_);
     add(solution.normal_reaction, solution.tangential_reaction, end_contact_force_);
-    obstacle_work_ = obstacle_work(stage, solution.acting_normal(), solution.acting_tangential(), step);
-    work_of_mean_ = on_contact(problem, mean_contact_force_, increment_) - obstacle_work_;
+    work_of_mean_ = on_contact(problem, mean_contact_force_, increment_) -
+                    obstacle_work(stage, solution.acting_normal(), solution.acting_tangential(), step);
     work_at_end_ = on_contact(problem, end_contact_force_, increment_) -
                    obstacle_work(stage, solution.normal_reaction, solution.tangential_reaction, step);
   }
@@ -163,11 +163,11 @@ bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double 
   defect += corrections_.numerical_dissipation;
   const double size = std::max(kinetic_start, kinetic_start + kinetic_change) + energy_start_ + energy_;
   if (!(size > 0.0)) return true;  // everything is at rest
-  return accept(state, step, defect / size, dissipation / size, size);
+  return accept(defect / size, dissipation / size, size);
 }
 
 /// Corrects the velocity by a relative defect of the energy, see close_balance().
-bool FiniteStrainStep::accept(const State& state, double step, double defect, double dissipation, double size) {
+bool FiniteStrainStep::accept(double defect, double dissipation, double size) {
   const bool is_corrected =
       std::abs(defect) > thresholds_.tolerance && velocity_correction_->find(end_velocity_, end_, -defect * size);
   if (log::enabled(log::Level::debug)) {
@@ -175,14 +175,10 @@ bool FiniteStrainStep::accept(const State& state, double step, double defect, do
         fmt::format("Newton: {} iterations, {:.2e} of the energy created, {:.2e} dissipated, velocities {}corrected",
                     progress_.iterations(), defect, dissipation, is_corrected ? "" : "not "));
   }
-  // In a short step contact nodes, which have no inertia, snap to another equilibrium, and the energy that this
-  // releases or absorbs is exchanged with the motion.
-  const bool is_short = step <= thresholds_.short_part * whole_step_;
-  const double most = is_short ? thresholds_.max_snapped : thresholds_.max_corrected;
   // Reactions of the end that act over a step may lose energy, others conserve it.
   const double gained = end_weight_ > 0.0 ? defect : std::abs(defect);
   if (!is_corrected && gained > thresholds_.near_rounding && progress_.tighten()) return false;
-  if (std::abs(defect) > most || (!is_corrected && gained > part_ * thresholds_.max_defect))
+  if (std::abs(defect) > thresholds_.max_corrected || (!is_corrected && gained > part_ * thresholds_.max_defect))
     throw Error(ErrorKind::not_converged,
                 fmt::format("the step would {} {:.2g} of the energy, as strains change too much in it",
                             defect > 0.0 ? "create" : "lose", std::abs(defect)));
@@ -191,13 +187,6 @@ bool FiniteStrainStep::accept(const State& state, double step, double defect, do
     end_velocity_ += velocity_correction_->value();
   }
   corrections_.integration_error = is_corrected ? 0.0 : defect * size;
-  if (std::abs(defect) > thresholds_.max_corrected && !snap_logged_) {
-    snap_logged_ = true;
-    log::info(
-        fmt::format("step {}: contact nodes snap to another equilibrium position; velocities compensate for the {:.2g} "
-                    "of the energy that this releases or absorbs (reported once)",
-                    state.step + 1, std::abs(defect)));
-  }
   return true;
 }
 
