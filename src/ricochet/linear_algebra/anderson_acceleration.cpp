@@ -2,215 +2,75 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace ricochet {
-
-namespace {
-
-/// Part of a change that is orthogonal to the others, relative to its length, up to which these span it.
-constexpr double same_direction = 1e-10;
-/// Rows of the vectors that are processed at a time: those of all directions then stay in the cache.
-constexpr Index strip_rows = 256;
-
-}  // namespace
 
 void AndersonAcceleration::distribute(const Ranks& ranks, Vector is_counted) {
   ranks_ = &ranks;
   is_counted_ = std::move(is_counted);
 }
 
-void AndersonAcceleration::resize(Index size) {
-  for (Vector* const each : {&image_, &residual_}) each->resize(size);
-  for (Matrix* const each : {&directions_, &image_changes_}) each->resize(size, depth_);
-  triangle_.setZero(depth_, depth_);
-  for (Vector* const each : {&lengths_, &on_residual_, &correction_}) each->setZero(depth_);
-  sums_.resize(2 * depth_ + 1);
-  slots_.resize(std::size_t(depth_));
-  std::iota(slots_.begin(), slots_.end(), 0);
-  rotations_.reserve(slots_.size());
-  strip_.resize(strip_rows);
-  restart();
-}
-
-/// Product of two vectors on a strip, as far as this rank counts it.
 template <class One, class Other>
-double AndersonAcceleration::product(Index begin, const One& one, const Other& other) const {
-  if (!ranks_->are_several()) return one.dot(other);
-  return one.cwiseProduct(is_counted_.segment(begin, one.size())).dot(other);
+double AndersonAcceleration::dot(const One& one, const Other& other) const {
+  return ranks_->are_several() ? ranks_->sum(one.cwiseProduct(is_counted_).dot(other)) : one.dot(other);
 }
 
-/// Adds Qᵀ × values, on a strip, to the sums at `first`.
 template <class Values>
-void AndersonAcceleration::add_products(Index begin, const Values& values, Index first) {
-  const auto directions = directions_.block(begin, 0, values.size(), count_).transpose();
-  auto sums = sums_.segment(first, count_);
-  if (ranks_->are_several()) {
-    auto counted = strip_.head(values.size());
-    counted = values.cwiseProduct(is_counted_.segment(begin, values.size()));
-    sums.noalias() += directions * counted;
-  } else {
-    sums.noalias() += directions * values;
-  }
-}
-
-template <class Visitor>
-void AndersonAcceleration::sum_over_strips(const Visitor& visit) {
-  sums_.setZero();
-  for (Index begin = 0; begin < image_.size(); begin += strip_rows)
-    visit(begin, std::min(strip_rows, image_.size() - begin));
-  if (ranks_->are_several()) ranks_->sum({sums_.data(), std::size_t(sums_.size())});
+double AndersonAcceleration::norm(const Values& values) const {
+  return ranks_->are_several() ? std::sqrt(dot(values, values)) : values.norm();
 }
 
 void AndersonAcceleration::advance(const Vector& point, const Vector& image, Vector& next) {
-  if (image_.size() != image.size()) resize(image.size());
-  if (!has_point_) {
-    has_point_ = true;
-    count_ = 0;
-    residual_ = image - point;
-    image_ = image;
-    next = image;
-    return;
-  }
-  if (count_ == depth_) discard(0);
-  const double length = enter(point, image);
-  if (!std::isfinite(length)) {
+  if (residual_changes_.rows() != image.size()) {
+    for (Matrix* const each : {&image_changes_, &residual_changes_, &directions_, &moves_})
+      each->resize(image.size(), depth_);
     restart();
-    next = image;
-    return;
   }
-  if (length > 0.0) append(length);
+  std::swap(residual_, last_residual_);
+  residual_ = image - point;
+  if (stored_ >= 0) store_changes(image);
+  stored_ = std::max<Index>(stored_, 0);
+  image_ = image;
+  next = image;
   combine(next);
 }
 
-/// Enters a point: replaces the last one, and sets the newest change and its products with Q, and Qᵀf. Returns the
-/// length of the change.
-double AndersonAcceleration::enter(const Vector& point, const Vector& image) {
-  const Index slot = slots_[std::size_t(count_)];
-  sum_over_strips([&](Index begin, Index size) {
-    apply_rotations(begin, size);
-    auto change = directions_.col(count_).segment(begin, size);
-    auto residual = residual_.segment(begin, size);
-    auto last_image = image_.segment(begin, size);
-    change = (image.segment(begin, size) - point.segment(begin, size)) - residual;
-    residual = image.segment(begin, size) - point.segment(begin, size);
-    image_changes_.col(slot).segment(begin, size) = image.segment(begin, size) - last_image;
-    last_image = image.segment(begin, size);
-    add_products(begin, change, 0);
-    add_products(begin, residual, depth_);
-    sums_[2 * depth_] += product(begin, change, change);
-  });
-  rotations_.clear();
-  coefficients() = sums_.head(count_);
-  on_residual_.head(count_) = sums_.segment(depth_, count_);
-  return std::sqrt(sums_[2 * depth_]);
+void AndersonAcceleration::store_changes(const Vector& image) {
+  newest_ = (newest_ + 1) % depth_;
+  stored_ = std::min(stored_ + 1, depth_);
+  image_changes_.col(newest_) = image - image_;
+  residual_changes_.col(newest_) = residual_ - last_residual_;
 }
 
-/// Appends the newest change, whose products with Q are known, to Q and R. Discards columns if they span it.
-void AndersonAcceleration::append(double length) {
-  lengths_[count_] = length;
-  coefficients() /= length;
-  subtract(length, coefficients());
-  orthogonalize_again();
-  while (own_length() <= same_direction && count_ > 0) {
-    discard(oldest_in_span());
-    return_lost_part();
-    orthogonalize_again();
-  }
-  const double own = own_length();
-  triangle_(count_, count_) = own;
-  sum_over_strips([&](Index begin, Index size) {
-    auto newest = directions_.col(count_).segment(begin, size);
-    newest /= own;
-    sums_[0] += product(begin, newest, residual_.segment(begin, size));
-  });
-  on_residual_[count_] = sums_[0];
-  ++count_;
-}
-
-/// Subtracts what a first pass has left in the directions of Q.
-void AndersonAcceleration::orthogonalize_again() {
-  correction_.head(count_) = sums_.head(count_);
-  coefficients() += correction_.head(count_);
-  subtract(1.0, correction_.head(count_));
-}
-
-/// Divides the newest change by a number and subtracts Q × parts; sums its products with Q, and its squared length.
-template <class Parts>
-void AndersonAcceleration::subtract(double divisor, const Parts& parts) {
-  sum_over_strips([&](Index begin, Index size) {
-    auto newest = directions_.col(count_).segment(begin, size);
-    if (divisor != 1.0) newest /= divisor;
-    newest.noalias() -= directions_.block(begin, 0, size, count_) * parts;
-    add_products(begin, newest, 0);
-    sums_[2 * depth_] += product(begin, newest, newest);
-  });
-}
-
-/// Returns the oldest column without which the others do not span the newest change any more. Without column k, the
-/// change has the part z·h/|z| along the direction z that is lost, with h its products with Q and Rᵀz = e_k.
-Index AndersonAcceleration::oldest_in_span() {
-  const auto triangle = triangle_.topLeftCorner(count_, count_).triangularView<Eigen::Upper>();
-  auto lost = correction_.head(count_);
-  for (Index column = 0; column < count_; ++column) {
-    lost.setZero();
-    lost[column] = 1.0;
-    triangle.transpose().solveInPlace(lost);
-    if (std::abs(lost.dot(coefficients())) > same_direction * lost.norm()) return column;
-  }
-  return 0;
-}
-
-/// Removes a column from R and Qᵀf. The rotations are still to be applied to Q, whose column `count_` is then the
-/// direction that is lost.
-void AndersonAcceleration::discard(Index column) {
-  const Index last = std::min(count_, depth_ - 1);  // the newest change, unless Q is full
-  const auto slot = slots_.begin() + column;
-  std::rotate(slot, slot + 1, slots_.begin() + last + 1);
-  for (Index k = column; k < last; ++k) {
-    triangle_.col(k).head(k + 2) = triangle_.col(k + 1).head(k + 2);
-    lengths_[k] = lengths_[k + 1];
-  }
-  --count_;
-  first_rotated_ = column;
-  for (Index k = column; k < count_; ++k) {
-    Eigen::JacobiRotation<double> rotation;
-    rotation.makeGivens(triangle_(k, k), triangle_(k + 1, k));
-    triangle_.middleCols(k, last - k).applyOnTheLeft(k, k + 1, rotation.adjoint());
-    on_residual_.applyOnTheLeft(k, k + 1, rotation.adjoint());
-    rotations_.push_back(rotation);
-  }
-}
-
-void AndersonAcceleration::apply_rotations(Index begin, Index size) {
-  auto directions = directions_.middleRows(begin, size);
-  for (Index k = 0; k < Index(rotations_.size()); ++k)
-    directions.applyOnTheRight(first_rotated_ + k, first_rotated_ + k + 1, rotations_[std::size_t(k)]);
-}
-
-/// Rotates Q and returns the part of the newest change along the direction that is lost to it.
-void AndersonAcceleration::return_lost_part() {
-  const double part = triangle_(count_, count_);
-  sum_over_strips([&](Index begin, Index size) {
-    apply_rotations(begin, size);
-    auto lost = directions_.col(count_).segment(begin, size);
-    lost = part * lost + directions_.col(count_ + 1).segment(begin, size);
-    add_products(begin, lost, 0);
-  });
-  rotations_.clear();
-}
-
+/// Solves the least-squares problem by modified Gram–Schmidt, orthogonalizing each direction twice. Changes shrink by
+/// orders of magnitude, so each is normalized, and one that newer ones nearly span is left out.
 void AndersonAcceleration::combine(Vector& next) {
-  auto weights = on_residual_.head(count_);
-  triangle_.topLeftCorner(count_, count_).triangularView<Eigen::Upper>().solveInPlace(weights);
-  weights.array() /= lengths_.head(count_).array();
-  next.resize(image_.size());
-  for (Index begin = 0; begin < next.size(); begin += strip_rows) {
-    auto strip = next.segment(begin, std::min(strip_rows, next.size() - begin));
-    strip = image_.segment(begin, strip.size());
-    for (Index k = 0; k < count_; ++k)
-      strip -= weights[k] * image_changes_.col(slots_[std::size_t(k)]).segment(begin, strip.size());
+  constexpr double same_direction = 1e-10;
+  remaining_ = residual_;
+  Index count = 0;
+  for (Index age = 0; age < stored_; ++age) {
+    const Index column = (newest_ - age + depth_) % depth_;
+    const double length = norm(residual_changes_.col(column));
+    if (length == 0.0) continue;
+    auto direction = directions_.col(count), move = moves_.col(count);
+    direction = residual_changes_.col(column) / length;
+    move = image_changes_.col(column) / length;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index k = 0; k < count; ++k) {
+        const double part = dot(directions_.col(k), direction);
+        direction -= part * directions_.col(k);
+        move -= part * moves_.col(k);
+      }
+    }
+    const double own = norm(direction);
+    if (own <= same_direction) continue;
+    direction /= own;
+    move /= own;
+    const double weight = dot(direction, remaining_);
+    remaining_ -= weight * direction;
+    next -= weight * move;
+    ++count;
   }
 }
 

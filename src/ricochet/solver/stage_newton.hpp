@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+#include "ricochet/linear_algebra/qr_anderson_acceleration.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/step/newton_progress.hpp"
 #include "ricochet/step/stage.hpp"
@@ -38,7 +38,7 @@ class StageNewton {
 
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
-  AndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
+  QrAndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   Vector total_, before_, displacement_, force_, inertial_force_, damping_force_, zero_motion_, follower_load_;
   // Data of the stage at δ = 0:
   ForceLinearization linearization_;

@@ -36,10 +36,10 @@ class NewtonProgress {
   void count_renewal() { ++renewals_; }
   /// Requires the accuracy that rounding permits from now on, until the next start(). Returns false if it already does.
   [[nodiscard]] bool tighten();
-  /// Whether the next iteration may be accelerated (linear_algebra/anderson_acceleration.hpp): corrections decrease and
-  /// are small relative to the increment, or they grow, or decrease slowly even with a new factorization. (The reason
-  /// of the latter is a force that no factorization contains, such as that of contact, which rotates with the surface
-  /// on which it acts.) Far from a solution, accelerated iterations may lead to another one.
+  /// Whether the next iteration may be accelerated (linear_algebra/qr_anderson_acceleration.hpp): corrections decrease
+  /// and are small relative to the increment, or they grow, or decrease slowly even with a new factorization. (The
+  /// reason of the latter is a force that no factorization contains, such as that of contact, which rotates with the
+  /// surface on which it acts.) Far from a solution, accelerated iterations may lead to another one.
   [[nodiscard]] bool wants_acceleration() const { return accelerates_ || decreases_near_; }
   [[nodiscard]] Error failure(double correction) const;
   [[nodiscard]] int iterations() const { return total_iterations_; }

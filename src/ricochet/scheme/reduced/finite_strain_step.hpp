@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+#include "ricochet/linear_algebra/qr_anderson_acceleration.hpp"
 #include "ricochet/problem/flight_prediction.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
@@ -133,7 +133,7 @@ class FiniteStrainStep {
   LaggedRows lagged_;    ///< for rows that follow the motion
   Reactions reactions_;  ///< of the previous iteration in this step, if any
   bool has_reactions_ = false;
-  AndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
+  QrAndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   StepEquations equations_;
   StepLoads loads_;
   StepCorrections corrections_;

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+#include "ricochet/linear_algebra/qr_anderson_acceleration.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/step/newton_progress.hpp"
@@ -41,7 +41,7 @@ class NonlinearContactEquilibrium {
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes
   double reach_ = 0.0;                                  ///< largest coordinate of the nodes
   NewtonProgress progress_;
-  AndersonAcceleration acceleration_{6};
+  QrAndersonAcceleration acceleration_{6};
   Vector force_, middle_, rate_;
   /// Per contact dof: increment of an iteration, with its correction, and its last change.
   Vector point_, image_, move_;
