@@ -60,8 +60,8 @@ TEST(FiniteStrain, FreeFlightKeepsEnergyAndMomenta) {
   }
 }
 
-/// Strains of 10⁻⁷, at which corrections shrink so fast that positions have converged before σ is known. (Displacements
-/// of 10⁻⁵ have a rounding of 10⁻¹⁴ of those.)
+/// Strains of 10⁻⁷: energies are differences of small numbers. (Displacements of 10⁻⁵ have a rounding of 10⁻¹⁴ of
+/// those.)
 TEST(FiniteStrain, SmallVibrationsKeepEnergyAsExactly) {
   for (const std::string& scheme : exact_schemes()) {
     for (const double step : {0.01, 0.2}) {
