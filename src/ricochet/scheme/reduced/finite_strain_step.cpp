@@ -11,7 +11,7 @@ namespace ricochet {
 
 namespace {
 
-/// Largest motion of a node, in any direction: turned motions need as many iterations.
+/// Largest motion of a node. Its norm does not depend on the axes, so that turned motions get the same advice.
 double largest_motion(const SemidiscreteProblem& problem, const Vector& motion) {
   return motion.reshaped(problem.dimension, problem.nodes.cols()).colwise().norm().maxCoeff();
 }
@@ -47,7 +47,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   path_rules_ = lowest_rules_;
   path_increment_ = 2.0 * (end_ - middle_);
   problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
-  looks_ = 0;
+  raises_ = 0;
   part_ = std::clamp(step / whole_step_, thresholds_.min_part, 1.0);
   has_reactions_ = false;
   acceleration_.restart();
@@ -142,7 +142,7 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
   return iteration;
 }
 
-/// Accelerates corrections that hardly shrink: displacements, with the reactions that acted on them.
+/// Accelerates the iterations of displacements, together with the reactions that act on them.
 void FiniteStrainStep::accelerate(const SemidiscreteProblem& problem, const State& state) {
   const auto contact = Index(problem.contact_dofs.size());
   const Index middle = middle_.size(), positions = middle + contact, points = reactions_.normal.size(),
@@ -227,8 +227,9 @@ void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReactio
     const Iteration iteration = correct(problem, state, solution);
     const NewtonProgress::Advice advice = progress_.assess(iteration.correction, iteration.increment);
     if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::proceed) accelerate(problem, state);
-    evaluate_with_halving(problem, step, state);
-    const bool is_done = advice == NewtonProgress::Advice::done;
+    const bool is_halved = evaluate_with_halving(problem, step, state);
+    // Reactions of an increment that was halved are not its own: contact conditions hold for the whole one.
+    const bool is_done = advice == NewtonProgress::Advice::done && !is_halved;
     const bool is_near = iteration.correction <= thresholds_.near_solution * iteration.increment;
     if ((is_done || is_near) && raise_rules(problem, is_done)) {
       evaluate(problem, step, state);

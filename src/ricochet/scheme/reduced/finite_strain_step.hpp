@@ -120,13 +120,14 @@ class FiniteStrainStep {
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
   void throw_if_inverted(const SemidiscreteProblem& problem);
-  void evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state);
+  /// Evaluates the forces, and halves the last correction as long as it inverts cells. Returns whether it did.
+  [[nodiscard]] bool evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state);
 
   EnergyThresholds thresholds_;
   std::unique_ptr<FlightPrediction> flight_;
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   PathRules lowest_rules_, path_rules_;                 ///< of D, the latter fixed while the equations are solved
-  int looks_ = 0;                                       ///< at changes of strains in this step
+  int raises_ = 0;                                      ///< possible ones so far in this step: near and at its solution
   NewtonProgress progress_;
   std::unique_ptr<VelocityCorrection> velocity_correction_;
   EndContact contact_;

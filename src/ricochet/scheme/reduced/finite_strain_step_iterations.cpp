@@ -37,18 +37,18 @@ void FiniteStrainStep::throw_if_inverted(const SemidiscreteProblem& problem) {
 
 /// Raises the rules of path_force() once near the solution and once at it. Returns whether the force has changed.
 bool FiniteStrainStep::raise_rules(const SemidiscreteProblem& problem, bool is_solution) {
-  const int looks = is_solution ? 2 : 1;
-  if (looks_ >= looks) return false;
-  looks_ = looks;
+  const int raises = is_solution ? 2 : 1;
+  if (raises_ >= raises) return false;
+  raises_ = raises;
   path_increment_ = 2.0 * (end_ - middle_);
   return problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
 }
 
-void FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state) {
+bool FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state) {
   for (int halving = 0;; ++halving) {
     try {
       evaluate(problem, step, state);
-      return;
+      return halving > 0;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
     }
