@@ -74,10 +74,9 @@ Section solver_section() {
       key("newton_tolerance", &SolverSection::newton_tolerance,
           {.unit = "1", .default_value = "1e-8", .range = {.above = 0.0, .at_most = 1e-3}},
           "Laws of finite strain under reduced-kane, mean-reaction and reduced-midpoint: error that Newton's method "
-          "leaves in the increment of a step, relative to the increment. Momenta, the account of energy and the rule "
-          "that no step creates energy hold to rounding with any value. Below 1e-13 rounding determines the error, "
-          "which "
-          "is so under the other schemes."),
+          "leaves in the increment of a step, relative to the increment. As long as bodies move, momenta, the account "
+          "of energy and the rule that no step creates energy hold to rounding with any value. Below 1e-13 rounding "
+          "determines the error. Other schemes always iterate to 1e-13."),
       key("memory", &SolverSection::memory, {.unit = "GB", .range = positive},
           "Memory that factors may occupy when \"auto\" selects the method. Default: half of the machine's memory."),
       key("preconditioner", &SolverSection::preconditioner,

@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-void PartLengths::enter_solution() {
+void PartLengths::record_solution() {
   const long length = whole >> level_;
   done_ = (done_ + length) % whole;
   for (Attempts& each : attempts_) each.wait = std::max(each.wait - length, 0L);
@@ -15,7 +15,7 @@ void PartLengths::enter_solution() {
   if (done_ % (whole >> longer) == 0 && attempts_[std::size_t(longer)].wait == 0) level_ = longer;
 }
 
-void PartLengths::enter_failure() {
+void PartLengths::record_failure() {
   Attempts& own = attempts_[std::size_t(level_)];
   own.wait = own.pause * (whole >> level_);
   own.pause = std::min(2 * own.pause, longest_pause);

@@ -24,10 +24,10 @@ class PartLengths {
   [[nodiscard]] bool is_shortest() const { return level_ == deepest; }
   /// Length of the present step that has been solved, in shortest parts; 0 between two steps.
   [[nodiscard]] long done() const { return done_; }
-  /// Enters that the next part has a solution.
-  void enter_solution();
-  /// Enters that the next part, which is not the shortest, has none.
-  void enter_failure();
+  /// Records that the next part was solved.
+  void record_solution();
+  /// Records that the next part, which is not the shortest, has no solution.
+  void record_failure();
   /// Persists the lengths between two steps.
   void persist(const SnapshotVisitor& visit);
 

@@ -71,8 +71,7 @@ class Simulation : private StageSolve {
   struct Level {
     std::unique_ptr<StepSolver> solver;
     std::vector<SolvedStage> stages;
-    bool has_failed =
-        false;  ///< the last attempts of this length found no solution, even with the tangent at the start
+    bool has_failed = false;  ///< whether the last attempt at this length, with the tangent at its start, failed
   };
   void persist(const SnapshotVisitor& visit);
   void persist_levels(const SnapshotVisitor& visit);

@@ -54,10 +54,10 @@ bool Simulation::take_whole_step() {
     const bool is_nonlinear = !problem_.internal_force->is_linear() || problem_.contact.follows_motion();
     const bool may_cut = is_nonlinear && scheme_.traits().supports_step_changes;
     if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
-    part_lengths_.enter_failure();
+    part_lengths_.record_failure();
     return false;
   }
-  part_lengths_.enter_solution();
+  part_lengths_.record_solution();
   return true;
 }
 
@@ -73,7 +73,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
       take_step(part_lengths_.is_shortest());
     } catch (const Error& problem) {
       if (problem.kind() == ErrorKind::not_converged && !part_lengths_.is_shortest()) {
-        part_lengths_.enter_failure();
+        part_lengths_.record_failure();
         warn_of_short_parts();
         continue;
       }
@@ -85,7 +85,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
       throw Error(problem.kind(), fmt::format("{}; parts of the step as short as 1/{} of it were tried", problem.what(),
                                               PartLengths::whole));
     }
-    part_lengths_.enter_solution();
+    part_lengths_.record_solution();
     is_complete = part_lengths_.done() == 0;
     const long done = is_complete ? PartLengths::whole : part_lengths_.done();
     state_.time = start.time + whole_step_ * double(done) / double(PartLengths::whole);

@@ -23,7 +23,7 @@ void StageNewton::evaluate(const Vector& displacement, Vector& force) {
   force -= follower_load_;
 }
 
-/// Updates δ by a correction; accelerated if corrections hardly shrink.
+/// Updates δ by a correction, and accelerates the iterations as NewtonProgress::wants_acceleration() advises.
 void StageNewton::correct(const Vector& correction) {
   before_ = total_;
   total_ += correction;

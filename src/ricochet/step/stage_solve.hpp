@@ -17,10 +17,10 @@ class StageSolve {
   /// is none, or if it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
 
-  /// Relative accuracy of the increment of a step, to which nonlinear equations are solved.
-  [[nodiscard]] virtual double newton_tolerance() const = 0;
-
   // For a nonlinear internal force, with displacements per dof:
+  /// Error, relative to the increment of a step, that Newton iterations of the scheme itself (NewtonProgress) may leave
+  /// in it. solve() iterates to rounding.
+  [[nodiscard]] virtual double newton_tolerance() const = 0;
   /// Rotates the operators with the bodies at this displacement.
   virtual void rotate_operators(const Vector& displacement) = 0;
   /// Number of iterations of Newton's method that take as long as renew_operators(), by counted costs.

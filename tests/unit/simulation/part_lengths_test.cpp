@@ -23,10 +23,10 @@ Attempts take_step(PartLengths& lengths, int longest) {
   Attempts attempts;
   do {
     if (lengths.level() < longest) {
-      lengths.enter_failure();
+      lengths.record_failure();
       ++attempts.failed;
     } else {
-      lengths.enter_solution();
+      lengths.record_solution();
       ++attempts.solved;
     }
   } while (lengths.done() > 0 || attempts.solved == 0);
@@ -82,9 +82,9 @@ TEST(PartLengths, EndWithTheStepWhateverFails) {
     EXPECT_EQ(lengths.done() % length, 0);
     EXPECT_LE(lengths.done() + length, whole);
     if (!lengths.is_shortest() && random() % 3 == 0) {
-      lengths.enter_failure();
+      lengths.record_failure();
     } else {
-      lengths.enter_solution();
+      lengths.record_solution();
     }
   }
 }

@@ -357,7 +357,7 @@ class SlidingContact final : public ContactGeometry {
     const SlidingPair& pair = *data_.pairs[k];
     PairViews& views = pair_views_[k];
     if (views.is_apart || !couples_.find_forces(pair.points(), normal, tangential, left_out_)) return;
-    // An iteration of a step begins at the place where the one before ended.
+    // An iteration of a step begins at the displacement at which the previous one ended.
     if (!views.has_couples_at(displacement, left_out_)) {
       pair.compute_views(displacement, SlidingPair::Content::row, left_out_, views.any_depth, views.couples);
       views.couples_at = displacement;
