@@ -135,6 +135,18 @@ class Impacts(Bodies):
         self.assertIn('requires a restraint of "floor" against motion along x', said)
 
 
+    def test_a_static_start_may_move_a_rigid_body(self):
+        """The support raises the block, with the disc on it, by more than a cell: no node is inside the disc where it then
+        is, although some would be inside it where it was."""
+        held = "mass = 1.0\nspring = [1.0, 1.0]\nrotation_spring = 1.0"
+        raised = ('[[support]]\ngroup = "bottom"\ncomponents = ["y"]\nvalue = 0.2\n[[support]]\ngroup = "bottom"\ncomponents = ["x"]\n'
+                  '[initial]\ndisplacement = "static"\n')
+        text = self.case(f'type = "sphere"\ncentre = [0.5, 0.82]\nradius = 0.3\n{held}', more=raised, end=0.01)
+        results = self.simulate(self.write("case.toml", text))
+        self.assertGreater(History(results / "history.csv")["floor.displacement_y"][0], 0.15)
+        self.assertEqual(summary_of(results)["unwatched_penetration"]["found"], [])
+
+
 class Runs(Bodies):
     def test_a_run_that_is_resumed_has_the_same_bits(self):
         (self.folder / "brick.stl").write_text(box_stl([0.3, 0.3, 0.65], [0.8, 0.6, 0.8]))

@@ -64,10 +64,16 @@ bool ObstacleWatch::is_supported(std::size_t obstacle, Index node) const {
   return true;
 }
 
-void ObstacleWatch::check(const State& state) {
+void ObstacleWatch::pose_obstacles(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
       posed_[k] = obstacles_[k]->at(state.time, state.displacement);
+  }
+}
+
+void ObstacleWatch::check(const State& state) {
+  pose_obstacles(state);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     for (const Index node : nodes_[k]) check_node(k, node, state);
   }
   for (const RimFacet& facet : rim_) check_rim(facet, state);
@@ -80,6 +86,7 @@ double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displa
 }
 
 void ObstacleWatch::check_start(const State& state) {
+  pose_obstacles(state);
   std::vector<char> on_boundary(static_cast<std::size_t>(problem_.nodes.cols()), 0);
   for (const Index node : problem_.contact.nodes) on_boundary[std::size_t(node)] = 1;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {

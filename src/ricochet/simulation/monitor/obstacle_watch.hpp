@@ -45,6 +45,8 @@ class ObstacleWatch {
   [[nodiscard]] const std::vector<RimContact>& rims() const { return rims_; }
 
  private:
+  /// Moves the obstacles to their positions in this state, as a static start may move rigid bodies.
+  void pose_obstacles(const State& state);
   /// Boundary facet at the border of a contact group.
   struct RimFacet {
     std::size_t obstacle = 0;
