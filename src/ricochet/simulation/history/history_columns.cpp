@@ -51,7 +51,10 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       work("load_work", &Works::load,
            "work done on the body since the start by loads that vary in time or [follow "
            "the surface](finite-strain.md#pressure)"),
-      work("contact_work", &Works::contact, "work of normal contact forces on the motion relative to the obstacle"),
+      work("contact_work", &Works::contact,
+           "work of normal contact forces on the motion relative to the obstacle; this and all other works and "
+           "dissipations are "
+           "sums since the start"),
       work("friction_work", &Works::friction,
            "work of tangential contact forces on the motion relative to the obstacle"),
       work("support_work", &Works::support, "work of supports"),
@@ -59,7 +62,10 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
       work("damping_work", &Works::damping, "work of damping"),
       work("numerical_dissipation", &Works::numerical_dissipation, "energy that the scheme itself has dissipated",
            ColumnGroup::balance),
-      {{"energy_residual", "energy", "residual of the balance of all these energies and works; zero to rounding",
+      {{"energy_residual", "energy",
+        "residual of the account: `total_energy` + `algorithmic_energy` + `numerical_dissipation` + "
+        "`viscous_dissipation` − `integration_error`, less the six works above and the value of all this at the start; "
+        "zero to rounding",
         ColumnComponents::one, Reduction::sum, ColumnGroup::balance},
        [](Row row, Index) { return row.energy_residual; }},
       {{"contact_force", "force",
