@@ -37,47 +37,64 @@ inline SparseMatrix matrix_on_graph(const NodeGraph& graph, int components) {
   return matrix;
 }
 
-/// Adds the rows of a cell's matrix that belong to the nodes of a part: blocks of `components`² for pairs of nodes i
-/// ≤ j, see element_matrices.hpp.
+/// Storage of the matrix of a cell.
+enum class CellMatrix {
+  symmetric,  ///< blocks of components² for pairs of nodes i ≤ j, see element_matrices.hpp
+  general     ///< all entries, column by column
+};
+
+/// Number of entries of the matrix of a cell with `count` nodes.
 template <int components>
-void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const Index* nodes, int count,
-              const double* blocks, double* values) {
+constexpr int entries_of(CellMatrix storage, int count) {
+  return components * components * (storage == CellMatrix::symmetric ? pair_number(0, count) : count * count);
+}
+
+/// Entry of the matrix of a cell: row `c` of node j, column `a` of node i.
+template <int components, CellMatrix storage>
+double entry_of(const double* matrix, int count, int i, int j, int a, int c) {
+  if constexpr (storage == CellMatrix::general) return matrix[((i * components + a) * count + j) * components + c];
+  const double* const block = matrix + pair_number(std::min(i, j), std::max(i, j)) * components * components;
+  return i <= j ? block[a * components + c] : block[c * components + a];
+}
+
+/// Adds the columns of a cell's matrix that belong to the nodes of a part.
+template <int components, CellMatrix storage>
+void add_columns(const NodeGraph& graph, Index part_begin, Index part_end, const Index* nodes, int count,
+                 const double* matrix, double* values) {
   for (int i = 0; i < count; ++i) {
-    const auto row = std::size_t(nodes[i]);
+    const auto column = std::size_t(nodes[i]);
     if (nodes[i] < part_begin || nodes[i] >= part_end) continue;
-    const Index row_start = graph.offsets[row];
-    const Index row_length = graph.offsets[row + 1] - row_start;
-    const int* begin = graph.neighbours.data() + row_start;
+    const Index start = graph.offsets[column];
+    const Index length = graph.offsets[column + 1] - start;
+    const int* begin = graph.neighbours.data() + start;
     for (int j = 0; j < count; ++j) {
-      const Index at = std::lower_bound(begin, begin + row_length, int(nodes[j])) - begin;
-      const double* block = blocks + pair_number(std::min(i, j), std::max(i, j)) * components * components;
+      const Index at = std::lower_bound(begin, begin + length, int(nodes[j])) - begin;
       for (int a = 0; a < components; ++a) {
-        double* target = values + (row_start * components + a * row_length + at) * components;
-        for (int c = 0; c < components; ++c)
-          target[c] += i <= j ? block[a * components + c] : block[c * components + a];
+        double* target = values + (start * components + a * length + at) * components;
+        for (int c = 0; c < components; ++c) target[c] += entry_of<components, storage>(matrix, count, i, j, a, c);
       }
     }
   }
 }
 
-/// Assembles the matrices of all cells. Each row is summed by one thread in the order of the cells, so that the result
-/// is bitwise the same for any number of threads. `element(block number, cell, cell number through all blocks, blocks)`
-/// computes the matrix of a cell.
-template <int components, class ElementMatrix>
+/// Assembles the matrices of all cells. Each column is summed by one thread in the order of the cells, so that the
+/// result is bitwise the same for any number of threads. `element(block number, cell, cell number through all blocks,
+/// entries)` computes the matrix of a cell.
+template <int components, CellMatrix storage = CellMatrix::symmetric, class ElementMatrix>
 SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMatrix& element) {
   SparseMatrix result = matrix_on_graph(graph, components);
   int most_nodes = 0;
   for (const CellBlock& block : body.space->cells) most_nodes = std::max(most_nodes, block.nodes_per_cell);
   parallel_ranges(graph.parts(), [&](Index first, Index last) {
-    std::vector<double> blocks(static_cast<std::size_t>(pair_number(0, most_nodes) * components * components));
+    std::vector<double> entries(static_cast<std::size_t>(entries_of<components>(storage, most_nodes)));
     for (auto part = std::size_t(first); part < std::size_t(last); ++part) {
       CellWalk cell(body.space->cells);
       for (Index k = graph.cell_begins[part]; k < graph.cell_begins[part + 1]; ++k) {
         const int number = graph.cells[std::size_t(k)];
         cell.go_to(number);
-        element(cell.block(), cell.local(), std::size_t(number), blocks.data());
-        add_rows<components>(graph, graph.part_begins[part], graph.part_begins[part + 1], cell.nodes(),
-                             cell.node_count(), blocks.data(), result.valuePtr());
+        element(cell.block(), cell.local(), std::size_t(number), entries.data());
+        add_columns<components, storage>(graph, graph.part_begins[part], graph.part_begins[part + 1], cell.nodes(),
+                                         cell.node_count(), entries.data(), result.valuePtr());
       }
     }
   });

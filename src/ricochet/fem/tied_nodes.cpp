@@ -44,7 +44,7 @@ TiedNodes::Weights TiedNodes::spread(const Weights& weights) const {
   return {sums.begin(), sums.end()};
 }
 
-SparseMatrix TiedNodes::condense(const SparseMatrix& matrix, int components) const {
+SparseMatrix TiedNodes::condense_general(const SparseMatrix& matrix, int components) const {
   const auto nodes = Index(tie_of_node_.size());
   std::vector<Eigen::Triplet<double>> entries;
   const auto enter = [&](Index row, Index column, double value) {
@@ -60,7 +60,11 @@ SparseMatrix TiedNodes::condense(const SparseMatrix& matrix, int components) con
   SparseMatrix spreading(nodes * components, nodes * components);
   spreading.setFromTriplets(entries.begin(), entries.end());
   const SparseMatrix product = matrix * spreading;
-  const SparseMatrix condensed = spreading.transpose() * product;
+  return spreading.transpose() * product;
+}
+
+SparseMatrix TiedNodes::condense(const SparseMatrix& matrix, int components) const {
+  const SparseMatrix condensed = condense_general(matrix, components);
   const SparseMatrix transposed = condensed.transpose();
   SparseMatrix result = 0.5 * (condensed + transposed);
   result.makeCompressed();

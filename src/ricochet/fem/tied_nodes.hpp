@@ -34,6 +34,8 @@ class TiedNodes {
   [[nodiscard]] Weights spread(const Weights& weights) const;
   /// TᵀAT with A on nodes (components = 1) or dofs, exactly symmetric.
   [[nodiscard]] SparseMatrix condense(const SparseMatrix& matrix, int components) const;
+  /// TᵀAT of a matrix that need not be symmetric.
+  [[nodiscard]] SparseMatrix condense_general(const SparseMatrix& matrix, int components) const;
   /// TᵀL, d components per node.
   void condense_load(Vector& load, int d) const;
   /// Fills in the values of the tied nodes.
