@@ -97,16 +97,14 @@ class CellKernel {
   /// of q. The values are meaningless if det F is not positive. (For the linear law F = I.)
   template <class Visit>
   void visit_stress(const LocalVector& u, const Visit& visit) {
-    const auto motion = [&] { return motion_of(u); };
-    if (has_dilatation()) find_dilatation(motion);
+    find_dilatation(u);
     Tensor stress;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      const PointMotion at = motion();
+      const PointMotion at = motion_of(u);
       const Tensor& strain = at.strain;
       const Tensor deformation = deformation_of(at.gradient, strain);
-      law_.stress(strain, stress);
-      if (has_dilatation()) add_mean_pressure(q, strain, stress);
+      find_stress(q, strain, stress);
       visit(q, deformation, strain, stress);
     }
   }
@@ -123,19 +121,15 @@ class CellKernel {
 
   /// Adds the tangent in d × d blocks for pairs of nodes, in the order of element_matrices.hpp.
   void add_tangent(const LocalVector& u, double* blocks) {
-    if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
+    find_dilatation(u);
     Tensor stress;
     StressTangent tangent;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
       const auto [motion, strain] = motion_of(u);
       const Tensor deformation = deformation_of(motion, strain);
-      law_.stress(strain, stress);
-      law_.tangent(strain, tangent);
-      if (has_dilatation()) {
-        add_mean_pressure(q, strain, stress);
-        add_mean_tangent(q, strain, tangent);
-      }
+      find_stress(q, strain, stress);
+      find_tangent(q, strain, tangent);
       add_point_tangent(q, deformation, law_.is_linear() ? Tensor::Zero().eval() : stress, tangent, blocks);
     }
     if (has_dilatation()) add_volume_tangent(u, blocks);
@@ -159,8 +153,18 @@ class CellKernel {
   [[nodiscard]] int points() const { return block_.points; }
   [[nodiscard]] int nodes() const { return block_.nodes; }
 
- private:
+ protected:
   using PointValues = std::array<double, most_cell_points>;
+  static constexpr int most_functions = CellDilatation<double>::most_functions;
+  /// ∫ ψ_m ∂J/∂u of the functions ψ_m of the mean dilatation, and ∫ ψ_m ψ_n U″(Θ).
+  using VolumeSlopes = std::array<LocalVector, most_functions>;
+  using VolumeProduct = Eigen::Matrix<double, most_functions, most_functions>;
+
+  [[nodiscard]] const PointLaw& law() const { return law_; }
+  [[nodiscard]] const KernelBlock<d>& block() const { return block_; }
+  [[nodiscard]] const CellDilatation<double>& dilatation() const { return dilatation_; }
+  [[nodiscard]] const double* shape_gradient(int node) const { return gradients_.data() + node * d; }
+  [[nodiscard]] double hoop(int node) const { return hoop_[std::size_t(node)]; }
 
   /// F. Under plane stress the stretch normal to the plane follows from the strain.
   [[nodiscard]] Tensor deformation_of(const Tensor& motion, const Tensor& strain) const {
@@ -170,17 +174,31 @@ class CellKernel {
     return result;
   }
 
-  /// Computes Θ − 1 and the pressure p at all points.
-  template <class Motion>
-  void find_dilatation(const Motion& motion) {
+  /// Computes Θ − 1 and the pressure p at all points from their strains strain(q), if there is a mean dilatation.
+  template <class Strain>
+  void find_dilatation_of(const Strain& strain) {
+    if (!has_dilatation()) return;
     PointValues change;
-    for (int q = 0; q < block_.points; ++q) {
-      go_to(q);
-      change[std::size_t(q)] = volume_change(determinant_change(2.0 * motion().strain));
-    }
+    for (int q = 0; q < block_.points; ++q) change[std::size_t(q)] = volume_change(determinant_change(2.0 * strain(q)));
     dilatation_.project(change.data(), mean_.data());
     for (int q = 0; q < block_.points; ++q) change[std::size_t(q)] = slope(mean_[std::size_t(q)]);
     dilatation_.project(change.data(), pressure_.data());
+  }
+  void find_dilatation(const LocalVector& u) {
+    find_dilatation_of([&](int q) {
+      go_to(q);
+      return motion_of(u).strain;
+    });
+  }
+
+  // At a point, after find_dilatation(), with the pressure of the cell. The tangent is that at constant pressure.
+  void find_stress(int q, const Tensor& strain, Tensor& stress) const {
+    law_.stress(strain, stress);
+    if (has_dilatation()) add_mean_pressure(q, strain, stress);
+  }
+  void find_tangent(int q, const Tensor& strain, StressTangent& tangent) const {
+    law_.tangent(strain, tangent);
+    if (has_dilatation()) add_mean_tangent(q, strain, tangent);
   }
   /// U′ and U″ of U(J) = (K/4)(J² − 1 − 2 ln J) at J = 1 + j.
   [[nodiscard]] double slope(double j) const { return 0.5 * volume_.modulus * j * (2.0 + j) / (1.0 + j); }
@@ -207,7 +225,8 @@ class CellKernel {
   }
 
   /// Computes the rows of B of a node: derivatives of the strain components (shear doubled) by its displacements, at F.
-  void strain_rows(int node, const Tensor& f, Eigen::Matrix<double, 6, d>& rows) const {
+  template <class Rows>
+  void strain_rows(int node, const Tensor& f, Rows&& rows) const {
     std::array<double, 3> g{};
     for (int a = 0; a < d; ++a) g[std::size_t(a)] = gradients_[std::size_t(node * d + a)];
     for (int k = 0; k < d; ++k) {
@@ -256,22 +275,31 @@ class CellKernel {
     }
   }
 
+  /// Adds ∫ ψ_m A ∇φ of a point, A = ∂J/∂H.
+  void add_volume_slopes(int q, const Tensor& slope, VolumeSlopes& slopes) const {
+    for (int m = 0; m < dilatation_.functions(); ++m)
+      add_force(q, dilatation_.function(m, q) * slope, slopes[std::size_t(m)]);
+  }
+  /// Adds ∫ ψ_m ψ_n U″(Θ) of a point.
+  void add_volume_product(int q, VolumeProduct& product) const {
+    const double second = weight(q) * curvature(mean_[std::size_t(q)]);
+    for (int m = 0; m < dilatation_.functions(); ++m) {
+      const double value = dilatation_.function(m, q);
+      for (int n = 0; n < dilatation_.functions(); ++n) product(m, n) += value * second * dilatation_.function(n, q);
+    }
+  }
+
   /// Adds the tangent of U(Θ): Σ_mn b_m b_nᵀ ∫ ψ_m ψ_n U″(Θ), b_m = ∫ ψ_m ∂J/∂u.
   void add_volume_tangent(const LocalVector& u, double* blocks) {
     const int count = dilatation_.functions();
-    std::array<LocalVector, CellDilatation<double>::most_functions> slopes{};
-    Eigen::Matrix<double, CellDilatation<double>::most_functions, CellDilatation<double>::most_functions> product;
-    product.setZero();
+    VolumeSlopes slopes{};
+    VolumeProduct product = VolumeProduct::Zero();
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
       const Tensor f = Tensor::Identity() + gradient(u);
       const Tensor cofactor = f.determinant() * f.inverse().transpose();
-      const double second = weight(q) * curvature(mean_[std::size_t(q)]);
-      for (int m = 0; m < count; ++m) {
-        const double value = dilatation_.function(m, q);
-        add_force(q, value * cofactor, slopes[std::size_t(m)]);
-        for (int n = 0; n < count; ++n) product(m, n) += value * second * dilatation_.function(n, q);
-      }
+      add_volume_slopes(q, cofactor, slopes);
+      add_volume_product(q, product);
     }
     for (int j = 0; j < block_.nodes; ++j) {
       for (int i = 0; i <= j; ++i, blocks += d * d) {
@@ -289,6 +317,7 @@ class CellKernel {
     }
   }
 
+ private:
   const KernelBlock<d>& block_;
   PointLaw law_;
   Index pack_, lane_;

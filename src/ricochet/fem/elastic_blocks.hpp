@@ -116,16 +116,6 @@ inline const ElasticCells::Blocks<3>& ElasticCells::blocks<3>() const {
   return *solid_;
 }
 
-/// Reads an internal strain of a branch.
-inline Tensor read_tensor(const double* from) {
-  Tensor result;
-  for (std::size_t k = 0; k < tangent_components.size(); ++k) {
-    const auto [i, j] = tangent_components[k];
-    result(i, j) = result(j, i) = from[k];
-  }
-  return result;
-}
-
 /// Calls work(std::integral_constant<int, d>) for the dimension.
 template <class Work>
 auto with_dimension(int dimension, const Work& work) {

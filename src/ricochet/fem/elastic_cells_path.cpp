@@ -1,42 +1,8 @@
-#include <cmath>
-
 #include "ricochet/fem/path_kernels.hpp"
 #include "ricochet/fem/strip_visits.hpp"
 
 /// @file Forces of the mean stress along the path of the strain over a step (strain_path.hpp).
 namespace ricochet {
-
-/// Gauss rule on [−½, ½].
-struct PathGaussRule {
-  int count;
-  std::array<double, 5> points, weights;
-};
-
-namespace {
-
-/// Roots of Legendre's polynomials of degree 2, 3 and 5, in closed form.
-const std::array<PathGaussRule, 3>& gauss_rules() {
-  static const std::array<PathGaussRule, 3> rules = [] {
-    const double two = 0.5 / std::sqrt(3.0), three = 0.5 * std::sqrt(0.6);
-    const double root = 2.0 * std::sqrt(10.0 / 7.0);
-    const double inner = std::sqrt(5.0 - root) / 6.0, outer = std::sqrt(5.0 + root) / 6.0;
-    const double part = 13.0 * std::sqrt(70.0);
-    return std::array<PathGaussRule, 3>{{{2, {-two, two}, {0.5, 0.5}},
-                                         {3, {-three, 0.0, three}, {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0}},
-                                         {5,
-                                          {-outer, -inner, 0.0, inner, outer},
-                                          {(322.0 - part) / 1800.0, (322.0 + part) / 1800.0, 64.0 / 225.0,
-                                           (322.0 + part) / 1800.0, (322.0 - part) / 1800.0}}}};
-  }();
-  return rules;
-}
-
-/// Number of the Gauss rule of a cell.
-constexpr std::size_t gauss_rule(PathRule rule) {
-  return rule == PathRule::five_points_exact ? 2 : rule == PathRule::two_points ? 0 : 1;
-}
-
-}  // namespace
 
 /// Computations of the mean stress on strips.
 template <int d>
@@ -62,7 +28,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     if (this->law().is_linear()) return this->add_forces(strip, forces);
     const bool any_exact = read_rules(strip, rules);
     std::fill_n(sums_.data(), numbers(strip), 0.0);
-    for (std::size_t rule = 0; rule < gauss_rules().size(); ++rule) {
+    for (std::size_t rule = 0; rule < path_gauss_rules().size(); ++rule) {
       if (uses_[rule]) add_stresses(strip, rule, worst);
     }
     if (any_exact) make_work_exact(strip, worst);
@@ -110,7 +76,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     this->for_each_lane(strip, [&](Index pack, int lane, Index, int cell) {
       const PathRule rule = rules[std::size_t(cell + this->first_cell())];
       rules_[lane_number(strip, pack, lane)] = rule;
-      uses_[gauss_rule(rule)] = true;
+      uses_[gauss_rule_number(rule)] = true;
       any_exact = any_exact || is_exact(rule);
     });
     return any_exact;
@@ -131,12 +97,13 @@ class ElasticCells::PathWork : public StripWork<d> {
   }
   /// Adds the stresses at the points of a Gauss rule to S̄ of the cells that use it.
   void add_stresses(const PackStrip<d>& strip, std::size_t number, InvertedCell& worst) {
-    const PathGaussRule& rule = gauss_rules()[number];
+    const PathGaussRule& rule = path_gauss_rules()[number];
     for (std::size_t q = 0; q < std::size_t(rule.count); ++q) {
       go_to(strip, rule.points[q], worst);
       this->find_stresses(strip);
-      set_weights(strip,
-                  [&](PathRule own, Index, int, Index) { return gauss_rule(own) == number ? rule.weights[q] : 0.0; });
+      set_weights(strip, [&](PathRule own, Index, int, Index) {
+        return gauss_rule_number(own) == number ? rule.weights[q] : 0.0;
+      });
       add_weighted(strip, weights_.data(), stresses_.data(), sums_.data());
     }
   }

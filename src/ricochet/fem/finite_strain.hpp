@@ -91,6 +91,16 @@ inline double volume_change(double s) { return s / (1.0 + std::sqrt(1.0 + s)); }
 /// Indices (i, j) of the components of a StressTangent.
 inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 
+/// Reads the components of a symmetric tensor, such as the internal strain of a branch.
+inline Tensor read_tensor(const double* from) {
+  Tensor result;
+  for (std::size_t k = 0; k < tangent_components.size(); ++k) {
+    const auto [i, j] = tangent_components[k];
+    result(i, j) = result(j, i) = from[k];
+  }
+  return result;
+}
+
 /// Adds factor · A ⊗ B, A and B symmetric.
 inline void add_dyad(const Tensor& a, const Tensor& b, double factor, StressTangent& result) {
   for (int p = 0; p < 6; ++p) {

@@ -44,6 +44,9 @@ class RelaxationRule {
   }
   /// ∂q̄/∂Ē for given E₀: 1 for short h, and about 2τ/h for long h.
   [[nodiscard]] double stiffness() const { return (1.0 + excess_) * scale_; }
+  /// ∂q̄/∂Ē at a given change ΔE = 2 (E₁ − Ē), and ∂q̄/∂ΔE at a given Ē.
+  [[nodiscard]] double mean_stiffness() const { return scale_; }
+  [[nodiscard]] double change_stiffness() const { return 0.5 * excess_ * scale_; }
   /// Returns A₁.
   template <class Strain>
   [[nodiscard]] RICOCHET_PART_OF_CALLER Strain next(const Strain& middle, const Strain& end,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 /// @file Mean of the stress along the path of the strain over a step.
@@ -30,5 +32,25 @@ using PathRules = std::vector<PathRule>;
                                                           : PathRule::two_points;
 }
 [[nodiscard]] constexpr bool is_exact(PathRule rule) { return rule >= PathRule::three_points_exact; }
+
+/// Gauss rule on [−½, ½]; the weights have the sum 1.
+struct PathGaussRule {
+  int count;
+  std::array<double, 5> points, weights;
+};
+/// Gauss rules of all path rules, and the number of the one that a path rule uses.
+[[nodiscard]] const std::array<PathGaussRule, 3>& path_gauss_rules();
+[[nodiscard]] constexpr std::size_t gauss_rule_number(PathRule rule) {
+  return rule == PathRule::five_points_exact ? 2 : rule == PathRule::two_points ? 0 : 1;
+}
+
+/// Direction of a derivative of D(x, Δ̂), the force of S̄ at the middle x = ½ (u⁺ + u₁) with the increment Δ̂ = u₁ − u⁺:
+/// a motion ψ changes x by a ψ and Δ̂ by b ψ.
+struct PathVariation {
+  double middle = 0.0;     ///< a
+  double increment = 0.0;  ///< b
+};
+/// ψ is a motion of the end u₁ with u⁺ held, or of the start u⁺ with u₁ held.
+inline constexpr PathVariation of_path_end{0.5, 1.0}, of_path_start{0.5, -1.0};
 
 }  // namespace ricochet

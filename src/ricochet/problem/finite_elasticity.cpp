@@ -62,6 +62,17 @@ void FiniteElasticity::path_force(const Vector& middle, const Vector& increment,
   condense(force);
 }
 
+SparseMatrix FiniteElasticity::condensed(SparseMatrix general) const {
+  if (body_.tied == nullptr || body_.tied->empty()) return general;
+  return body_.tied->condense_general(general, body_.mesh->dimension);
+}
+
+SparseMatrix FiniteElasticity::path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                            const PathVariation& variation) const {
+  return condensed(
+      cells_.path_tangent(complete(middle, displacement_), complete(increment, increment_), rules, variation));
+}
+
 double FiniteElasticity::estimated_seconds() const {
   constexpr double per_number = 1.3e-9;  // per component of a node and quadrature point
   return per_number * cells_.size();
@@ -85,6 +96,11 @@ SparseMatrix FiniteElasticity::step_tangent(const Vector& displacement, double s
   SparseMatrix result = cells_.tangent(complete(displacement, displacement_), step);
   if (body_.tied == nullptr || body_.tied->empty()) return result;
   return body_.tied->condense(result, body_.mesh->dimension);
+}
+
+SparseMatrix FiniteElasticity::step_path_tangent(const BranchStep& step, const PathRules& rules,
+                                                 const PathVariation& variation) const {
+  return condensed(cells_.path_tangent(complete(step), rules, variation));
 }
 
 BranchStep FiniteElasticity::complete(const BranchStep& step) const {

@@ -15,6 +15,8 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
 
   void evaluate(const Vector& displacement, Vector& force) const override;
   void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
+  [[nodiscard]] SparseMatrix path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                          const PathVariation& variation) const override;
   [[nodiscard]] PathRules path_rules() const override;
   [[nodiscard]] double estimated_seconds() const override;
   bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override;
@@ -35,11 +37,14 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] double start_energy(const BranchStep& step, const Vector& displacement) const override;
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const override;
   [[nodiscard]] SparseMatrix step_tangent(const Vector& displacement, double step) const override;
+  [[nodiscard]] SparseMatrix step_path_tangent(const BranchStep& step, const PathRules& rules,
+                                               const PathVariation& variation) const override;
 
  private:
   /// Fills in the values of the tied nodes.
   const Vector& complete(const Vector& values, Vector& memory) const;
   void condense(Vector& force) const;
+  [[nodiscard]] SparseMatrix condensed(SparseMatrix general) const;
   void require_positive_volume(const InvertedCell& inverted) const;
 
   const Body& body_;

@@ -40,10 +40,19 @@ void GroundSprings::path_force(const Vector& middle, const Vector& increment, co
   add(middle, force);
 }
 
+SparseMatrix GroundSprings::path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                         const PathVariation& variation) const {
+  return with_springs(bodies_->path_tangent(middle, increment, rules, variation), variation.middle);
+}
+
 SparseMatrix GroundSprings::tangent(const Vector& displacement) const {
-  const SparseMatrix of_bodies = bodies_->tangent(displacement);
+  return with_springs(bodies_->tangent(displacement), 1.0);
+}
+
+/// Adds the stiffness of the springs times a factor.
+SparseMatrix GroundSprings::with_springs(const SparseMatrix& of_bodies, double factor) const {
   Vector stiffness = Vector::Zero(of_bodies.rows());
-  for (const auto& [dof, value] : springs_) stiffness[dof] = value;
+  for (const auto& [dof, value] : springs_) stiffness[dof] = factor * value;
   return of_bodies + diagonal_matrix(stiffness);
 }
 

@@ -16,6 +16,8 @@ class GroundSprings final : public InternalForce {
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
   void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const override;
+  [[nodiscard]] SparseMatrix path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                          const PathVariation& variation) const override;
   [[nodiscard]] PathRules path_rules() const override { return bodies_->path_rules(); }
   [[nodiscard]] double estimated_seconds() const override { return bodies_->estimated_seconds(); }
   bool raise_path_rules(const Vector& middle, const Vector& increment, PathRules& rules) const override {
@@ -35,6 +37,7 @@ class GroundSprings final : public InternalForce {
 
  private:
   void add(const Vector& displacement, Vector& force) const;
+  [[nodiscard]] SparseMatrix with_springs(const SparseMatrix& of_bodies, double factor) const;
   [[nodiscard]] double own_energy(const Vector& displacement) const;
 
   std::shared_ptr<const InternalForce> bodies_;

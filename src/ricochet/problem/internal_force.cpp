@@ -23,6 +23,10 @@ std::shared_ptr<const InternalForce> InternalForce::restricted_to(const std::vec
 
 void InternalForce::path_force(const Vector&, const Vector&, const PathRules&, Vector&) const { throw_linear(); }
 
+SparseMatrix InternalForce::path_tangent(const Vector&, const Vector&, const PathRules&, const PathVariation&) const {
+  throw_linear();
+}
+
 PathRules InternalForce::path_rules() const { throw_linear(); }
 
 bool InternalForce::raise_path_rules(const Vector&, const Vector&, PathRules&) const { throw_linear(); }

@@ -30,6 +30,10 @@ class InternalForce {
   /// `middle` − ½ `increment` to `middle` + ½ `increment` (fem/strain_path.hpp). Their work on the increment is the
   /// change of the energy, and a rigid motion has none. Only for nonlinear forces; throws as evaluate() does.
   virtual void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const;
+  /// Returns a ∂D/∂x + b ∂D/∂Δ̂ of the force D that path_force() computes, with a and b of the `variation`: in general
+  /// not symmetric, with the pattern of tangent(). For solvers with the exact tangent; only for nonlinear forces.
+  [[nodiscard]] virtual SparseMatrix path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                                  const PathVariation& variation) const;
   /// Rules of path_force() for small changes of the strain, one per cell of the body; and raises the rules of the cells
   /// whose strain changes more. Returns whether any was raised. Only for nonlinear forces.
   [[nodiscard]] virtual PathRules path_rules() const;

@@ -28,6 +28,10 @@ class ViscousForce {
   [[nodiscard]] virtual double start_energy(const BranchStep& step, const Vector& displacement) const = 0;
   /// Tangent of the laws and the branches over a step of the given length; see InternalForce::tangent().
   [[nodiscard]] virtual SparseMatrix step_tangent(const Vector& displacement, double step) const = 0;
+  /// Returns the derivative of the path force of the laws and the mean force of the branches over a step; see
+  /// InternalForce::path_tangent(). The end of the step is x + ½ Δ̂.
+  [[nodiscard]] virtual SparseMatrix step_path_tangent(const BranchStep& step, const PathRules& rules,
+                                                       const PathVariation& variation) const = 0;
   /// Computes A₁; returns the energy that the step dissipates, never negative.
   [[nodiscard]] virtual double advance_internal(const BranchStep& step, Vector& internal) const = 0;
 };

@@ -39,14 +39,18 @@ struct LargeBody {
   Vector displacement, increment;
 };
 
+/// Some cells of a pack have other rules than the others.
+PathRules some_rules(const LargeBody& of) {
+  PathRules rules(of.body->body.cell_material.size());
+  for (std::size_t cell = 0; cell < rules.size(); ++cell) rules[cell] = PathRule(cell * cell % 7 % 4);
+  return rules;
+}
+
 struct Forces {
   Forces(const LargeBody& of, const NodeGraph& graph, const std::vector<int>& some = {}) {
     const ElasticCells cells(of.body->body, &graph, some);
     EXPECT_EQ(cells.force(of.displacement, force).cell, -1);
-    // Some cells of a pack have other rules than the others.
-    PathRules rules(of.body->body.cell_material.size());
-    for (std::size_t cell = 0; cell < rules.size(); ++cell) rules[cell] = PathRule(cell * cell % 7 % 4);
-    EXPECT_EQ(cells.path_force(of.displacement, of.increment, rules, path).cell, -1);
+    EXPECT_EQ(cells.path_force(of.displacement, of.increment, some_rules(of), path).cell, -1);
     energy = cells.energy(of.displacement);
   }
   Vector force, path;
@@ -86,6 +90,29 @@ TEST_P(CellPacksOfKind, BitsAreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(alone.force, together.force);
   EXPECT_EQ(alone.path, together.path);
   EXPECT_EQ(alone.energy, together.energy);
+}
+
+TEST_P(CellPacksOfKind, TheTangentOfThePathForceHasItsRulesAndTheSameBitsForAnyNumberOfThreads) {
+  const LargeBody test(GetParam());
+  const NodeGraph graph = node_graph(test.body->space);
+  const ElasticCells cells(test.body->body, &graph);
+  const PathRules rules = some_rules(test);
+  const auto tangent = [&] { return cells.path_tangent(test.displacement, test.increment, rules, of_path_end); };
+  const SparseMatrix alone = tangent();
+  set_thread_count(3);
+  const SparseMatrix together = tangent();
+  set_thread_count(1);
+  EXPECT_EQ((alone - together).norm(), 0.0);
+  constexpr double h = 1e-4;
+  Vector before, after;
+  const auto force = [&](double size, Vector& result) {
+    const Vector middle = test.displacement + 0.5 * size * test.increment, increment = (1.0 + size) * test.increment;
+    EXPECT_EQ(cells.path_force(middle, increment, rules, result).cell, -1);
+  };
+  force(-h, before);
+  force(h, after);
+  const Vector wanted = (after - before) / (2.0 * h);
+  EXPECT_LT((alone * test.increment - wanted).norm(), 1e-7 * wanted.norm());
 }
 
 /// The cells at some nodes, and all others.
