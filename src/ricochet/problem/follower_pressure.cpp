@@ -127,6 +127,11 @@ double value_of(const Expression& pressure, const Eigen::Vector3d& at, double ti
   return pressure(at[0], at[1], at[2], time);
 }
 
+double mean_of(const Expression& pressure, const Eigen::Vector3d& at, double start, double end) {
+  const double later = value_of(pressure, at, end);
+  return pressure.depends_on_time() ? 0.5 * (value_of(pressure, at, start) + later) : later;
+}
+
 }  // namespace
 
 void FollowerPressure::add_force(const Vector& displacement, double time, Vector& load, double part) const {
@@ -138,13 +143,7 @@ void FollowerPressure::add_force(const Vector& displacement, double time, Vector
 void FollowerPressure::add_mean_force(const Vector& displacement, double start, double end, Vector& load) const {
   last_ = {end, 1.0};
   add_condensed(
-      displacement,
-      [&](const Point& at) {
-        const double later = value_of(at.surface.pressure, at.undeformed, end);
-        if (!at.surface.pressure.depends_on_time()) return later;
-        return 0.5 * (value_of(at.surface.pressure, at.undeformed, start) + later);
-      },
-      load);
+      displacement, [&](const Point& at) { return mean_of(at.surface.pressure, at.undeformed, start, end); }, load);
 }
 
 namespace {
@@ -158,14 +157,15 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }  // namespace
 
 /// −∂force_i/∂u_j = p φ_i (ring ∂n/∂u_j + n ⊗ ∂ring/∂u_j),   ∂n/∂u_j = φ_j,₂ [y,₁]× − φ_j,₁ [y,₂]×.
-template <int d>
-SparseMatrix FollowerPressure::stiffness_of(const Vector& displacement) const {
+/// `weighted` is p times the weight of a point.
+template <int d, class Weight>
+SparseMatrix FollowerPressure::stiffness_of(const Vector& displacement, const Weight& weighted, bool symmetric) const {
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&entries](Index row, Index column, double value) {
     entries.emplace_back(int(row), int(column), value);
   };
   visit_points<d>(displacement, [&](const Point& at) {
-    const double factor = 0.5 * at.weight * last_.part * value_of(at.surface.pressure, at.undeformed, last_.time);
+    const double factor = (symmetric ? 0.5 : 1.0) * weighted(at);
     const Eigen::Matrix3d along = cross_matrix(at.slopes[0]), across = cross_matrix(at.slopes[1]);
     for (Index j = 0; j < at.shape.rows(); ++j) {
       Eigen::Matrix3d change = -at.shape(j, 0) * across;
@@ -177,7 +177,7 @@ SparseMatrix FollowerPressure::stiffness_of(const Vector& displacement) const {
           for (int b = 0; b < d; ++b) {
             const double value = at.values(i, at.q) * change(a, b);
             add(at.nodes[i] * d + a, at.nodes[j] * d + b, value);
-            add(at.nodes[j] * d + b, at.nodes[i] * d + a, value);
+            if (symmetric) add(at.nodes[j] * d + b, at.nodes[i] * d + a, value);
           }
         }
       }
@@ -188,12 +188,28 @@ SparseMatrix FollowerPressure::stiffness_of(const Vector& displacement) const {
   return result;
 }
 
-SparseMatrix FollowerPressure::stiffness(const Vector& displacement) const {
+template <class Weight>
+SparseMatrix FollowerPressure::complete_stiffness(const Vector& displacement, const Weight& weighted,
+                                                  bool symmetric) const {
   const int d = body_.mesh->dimension;
   const Vector& at = complete(displacement);
-  SparseMatrix result = d == 2 ? stiffness_of<2>(at) : stiffness_of<3>(at);
+  SparseMatrix result = d == 2 ? stiffness_of<2>(at, weighted, symmetric) : stiffness_of<3>(at, weighted, symmetric);
   if (body_.tied == nullptr || body_.tied->empty()) return result;
-  return body_.tied->condense(result, d);
+  return symmetric ? body_.tied->condense(result, d) : body_.tied->condense_general(result, d);
+}
+
+SparseMatrix FollowerPressure::stiffness(const Vector& displacement) const {
+  const auto weighted = [&](const Point& at) {
+    return at.weight * last_.part * value_of(at.surface.pressure, at.undeformed, last_.time);
+  };
+  return complete_stiffness(displacement, weighted, true);
+}
+
+SparseMatrix FollowerPressure::mean_stiffness(const Vector& displacement, double start, double end) const {
+  const auto weighted = [&](const Point& at) {
+    return at.weight * mean_of(at.surface.pressure, at.undeformed, start, end);
+  };
+  return complete_stiffness(displacement, weighted, false);
 }
 
 }  // namespace ricochet

@@ -45,6 +45,9 @@ class FollowerPressure {
   /// requires. Under a uniform pressure the antisymmetric part comes from the edges of the surface alone and vanishes
   /// if these are supported or if there are none. Entries couple nodes of the same facet.
   [[nodiscard]] SparseMatrix stiffness(const Vector& displacement) const;
+  /// Returns −∂force/∂U of the force that add_mean_force() adds, with its antisymmetric part. For solvers with the
+  /// exact tangent: of a step, a times this belongs to InternalForce::path_tangent(), as U is the middle.
+  [[nodiscard]] SparseMatrix mean_stiffness(const Vector& displacement, double start, double end) const;
 
  private:
   struct Facet {
@@ -61,8 +64,11 @@ class FollowerPressure {
   void visit_points(const Vector& displacement, const Visit& visit) const;
   template <int d, class Pressure>
   void add_forces(const Vector& displacement, const Pressure& pressure, Vector& load) const;
-  template <int d>
-  [[nodiscard]] SparseMatrix stiffness_of(const Vector& displacement) const;
+  template <int d, class Weight>
+  [[nodiscard]] SparseMatrix stiffness_of(const Vector& displacement, const Weight& weighted, bool symmetric) const;
+  template <class Weight>
+  [[nodiscard]] SparseMatrix complete_stiffness(const Vector& displacement, const Weight& weighted,
+                                                bool symmetric) const;
   template <class Pressure>
   void add_condensed(const Vector& displacement, const Pressure& pressure, Vector& load) const;
   [[nodiscard]] double outward_side(const Facet& facet, Index cell) const;

@@ -125,6 +125,18 @@ TEST_P(Pressed, StiffnessIsTheSymmetricPartOfTheDerivative) {
   }
 }
 
+TEST_P(Pressed, TheStiffnessOfTheMeanIsTheWholeDerivative) {
+  const Vector u = random(0.04, 1), along = random(1.0, 2);
+  const FollowerPressure pressed = pressure("x1", Expression("0.7+0.2*y+0.3*t"));
+  const auto mean = [&](const Vector& at) {
+    Vector force = Vector::Zero(at.size());
+    pressed.add_mean_force(at, 0.5, 2.0, force);
+    return force;
+  };
+  const Vector slope = 0.5 * (mean(u + along) - mean(u - along));
+  EXPECT_LT((pressed.mean_stiffness(u, 0.5, 2.0) * along + slope).norm(), 1e-13 * slope.norm());
+}
+
 TEST_P(Pressed, TimeAndParts) {
   const Vector u = random(0.04, 1);
   const FollowerPressure rising = pressure("x1", Expression("2+3*t+x")), still = pressure("x1", Expression("2+x"));
