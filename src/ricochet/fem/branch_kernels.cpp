@@ -92,8 +92,7 @@ struct BranchStresses {
   template <class T>
   RICOCHET_PART_OF_CALLER T acting(const RelaxationRule& rule, const BranchStrains<T>& at, const T& own) const {
     if (of == BranchStress::mean) return rule.mean(at.middle, at.end, own);
-    const T end = at.end - rule.next(at.middle, at.end, own);
-    return of == BranchStress::end ? end : rule.start_stress(at.at, own, end);
+    return at.end - rule.next(at.middle, at.end, own);
   }
   template <int W>
   RICOCHET_PART_OF_CALLER void run() const {

@@ -30,8 +30,7 @@ struct BranchPoints {
 
 enum class BranchStress {
   mean,  ///< of q̄
-  end,   ///< of q₁
-  start  ///< RelaxationRule::start_stress, at the displacement
+  end    ///< of q₁
 };
 /// Computes Σ 2gμ q.
 template <int d>

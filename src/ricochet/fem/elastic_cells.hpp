@@ -95,9 +95,8 @@ class ElasticCells {
   void mean_branch_force(const BranchStep& step, Vector& result) const;
   /// Computes the force of q₁, at the end.
   void end_branch_force(const BranchStep& step, Vector& result) const;
-  /// Integral of the potential RelaxationRule::start_energy() at a displacement, and its forces.
+  /// Integral of the potential RelaxationRule::start_energy() at a displacement.
   [[nodiscard]] double start_branch_energy(const BranchStep& step, const Vector& displacement) const;
-  void start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const;
   /// Computes A₁; returns the energy that the step dissipates, ≥ 0.
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const;
 

@@ -53,7 +53,7 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
 
   void add_forces(BranchStress of, const PackStrip<d>& strip, double* forces) {
     find_branch_stresses(of, points(strip), result_.data());
-    const auto& gradients = of == BranchStress::mean ? gradients_ : of == BranchStress::end ? ends_ : others_;
+    const auto& gradients = of == BranchStress::mean ? gradients_ : ends_;
     ricochet::add_forces(strip, false, gradients.data(), result_.data(), forces);
   }
   [[nodiscard]] double work(BranchWork of, const PackStrip<d>& strip) {
@@ -190,10 +190,6 @@ void ElasticCells::end_branch_force(const BranchStep& step, Vector& result) cons
 double ElasticCells::start_branch_energy(const BranchStep& step, const Vector& displacement) const {
   return sum_branches({&step, &displacement, step.internal},
                       [](auto& strips, const auto& strip) { return strips.work(BranchWork::start_energy, strip); });
-}
-
-void ElasticCells::start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const {
-  add_up_branches(BranchStress::start, {&step, &displacement, step.internal}, result);
 }
 
 double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) const {

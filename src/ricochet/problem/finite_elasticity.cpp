@@ -135,11 +135,6 @@ void FiniteElasticity::add_end_force(const BranchStep& step, Vector& force) cons
   add_branches(force);
 }
 
-void FiniteElasticity::add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const {
-  cells_.start_branch_force(complete(step), complete(displacement, at_), branches_);
-  add_branches(force);
-}
-
 double FiniteElasticity::start_energy(const BranchStep& step, const Vector& displacement) const {
   return cells_.start_branch_energy(complete(step), complete(displacement, at_));
 }

@@ -33,7 +33,6 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const override;
   void add_mean_force(const BranchStep& step, Vector& force) const override;
   void add_end_force(const BranchStep& step, Vector& force) const override;
-  void add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double start_energy(const BranchStep& step, const Vector& displacement) const override;
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const override;
   [[nodiscard]] SparseMatrix step_tangent(const Vector& displacement, double step) const override;

@@ -22,9 +22,8 @@ class ViscousForce {
   virtual void add_mean_force(const BranchStep& step, Vector& force) const = 0;
   /// Adds the force at the end of the step, with A₁.
   virtual void add_end_force(const BranchStep& step, Vector& force) const = 0;
-  /// Adds the gradient of start_energy() at a displacement: it measures the energy lost by contact nodes that jump at
-  /// the start of a step (RelaxationRule::start_energy(), scheme/reduced/finite_strain_step.hpp).
-  virtual void add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const = 0;
+  /// Potential at a displacement, which measures the energy lost by contact nodes that jump at the start of a step
+  /// (RelaxationRule::start_energy(), scheme/reduced/finite_strain_step.hpp).
   [[nodiscard]] virtual double start_energy(const BranchStep& step, const Vector& displacement) const = 0;
   /// Tangent of the laws and the branches over a step of the given length; see InternalForce::tangent().
   [[nodiscard]] virtual SparseMatrix step_tangent(const Vector& displacement, double step) const = 0;
