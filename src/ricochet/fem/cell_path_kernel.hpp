@@ -54,7 +54,7 @@ class CellPathKernel : public CellKernel<d> {
 
   /// Adds S̄, C⁰ and C¹ of the law at all points, and the products of vectors to the matrix. Requires set_path().
   void add_law(PathRule rule, LocalMatrix& matrix) {
-    const PathGaussRule& gauss = path_gauss_rules()[gauss_rule_number(rule)];
+    const PathGaussRule& gauss = gauss_rule_of(rule);
     work_slope_.fill(0.0);
     for (std::size_t k = 0; k < std::size_t(gauss.count); ++k) add_at(gauss.points[k], gauss.weights[k], matrix);
     if (is_exact(rule)) add_exact_work(matrix);

@@ -28,8 +28,9 @@ class ElasticCells::PathWork : public StripWork<d> {
     if (this->law().is_linear()) return this->add_forces(strip, forces);
     const bool any_exact = read_rules(strip, rules);
     std::fill_n(sums_.data(), numbers(strip), 0.0);
-    for (std::size_t rule = 0; rule < path_gauss_rules().size(); ++rule) {
-      if (uses_[rule]) add_stresses(strip, rule, worst);
+    for (const PathGaussRule& rule : path_gauss_rules()) {
+      if (std::ranges::any_of(path_rule_table, [&](const auto& each) { return uses(each, rule); }))
+        add_stresses(strip, rule, worst);
     }
     if (any_exact) make_work_exact(strip, worst);
     ricochet::add_forces(strip, false, gradients_.data(), sums_.data(), forces);
@@ -76,7 +77,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     this->for_each_lane(strip, [&](Index pack, int lane, Index, int cell) {
       const PathRule rule = rules[std::size_t(cell + this->first_cell())];
       rules_[lane_number(strip, pack, lane)] = rule;
-      uses_[gauss_rule_number(rule)] = true;
+      uses_[std::size_t(rule)] = true;
       any_exact = any_exact || is_exact(rule);
     });
     return any_exact;
@@ -95,14 +96,16 @@ class ElasticCells::PathWork : public StripWork<d> {
     move_along<d>(strip.points(), means_.data(), changes_.data(), tau, strains_.data());
     this->complete(strip, true, worst);
   }
+  [[nodiscard]] bool uses(const PathRuleProperties& each, const PathGaussRule& gauss) const {
+    return uses_[std::size_t(each.rule)] && each.points == gauss.count;
+  }
   /// Adds the stresses at the points of a Gauss rule to S̄ of the cells that use it.
-  void add_stresses(const PackStrip<d>& strip, std::size_t number, InvertedCell& worst) {
-    const PathGaussRule& rule = path_gauss_rules()[number];
-    for (std::size_t q = 0; q < std::size_t(rule.count); ++q) {
-      go_to(strip, rule.points[q], worst);
+  void add_stresses(const PackStrip<d>& strip, const PathGaussRule& gauss, InvertedCell& worst) {
+    for (std::size_t q = 0; q < std::size_t(gauss.count); ++q) {
+      go_to(strip, gauss.points[q], worst);
       this->find_stresses(strip);
       set_weights(strip, [&](PathRule own, Index, int, Index) {
-        return gauss_rule_number(own) == number ? rule.weights[q] : 0.0;
+        return properties_of(own).points == gauss.count ? gauss.weights[q] : 0.0;
       });
       add_weighted(strip, weights_.data(), stresses_.data(), sums_.data());
     }
@@ -136,7 +139,7 @@ class ElasticCells::PathWork : public StripWork<d> {
   alignas(64) LaneNumbers weights_;
   alignas(64) StripNumbers<1> ends_, starts_, works_;  ///< energies at both ends; S̄ : ΔE
   std::array<PathRule, std::size_t(CellStrips<d>::points_at_once* most_pack_width)> rules_;
-  std::array<bool, 3> uses_{};  ///< Gauss rules that occur in the strip
+  std::array<bool, path_rule_table.size()> uses_{};  ///< whether a rule occurs in the strip
 };
 
 InvertedCell ElasticCells::path_force(const Vector& middle, const Vector& increment, const PathRules& rules,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -12,36 +13,56 @@
 /// satisfies S̄ : ΔE = W(E(u₁)) − W(E(u⁺)) up to an error of order |ΔE|^(2n+1) for n points. Where |ΔE| is large,
 /// c ΔE with the number c of a cell that makes Σ ∫ (S̄ + c ΔE) : ΔE exact is added (O. Gonzalez, J. Nonlinear Sci. 6
 /// (1996) 449–467); the fewer points there are, the larger is c. All strains of the path have a positive volume if both
-/// ends have one.
+/// ends have one. The work is a difference of energies because S = ∂W/∂E: a law with a state would need a path that is
+/// followed point by point, its dissipation in the balance of the step, and no exact work.
 namespace ricochet {
 
-/// Rule for the path of a cell: number of Gauss points, and whether the work of the cell is made exact.
+/// Rule for the path of a cell, in ascending accuracy: rules are raised in this order.
 enum class PathRule : unsigned char { two_points, three_points, three_points_exact, five_points_exact };
+
+/// Properties of a rule.
+struct PathRuleProperties {
+  PathRule rule;
+  int points;    ///< number of Gauss points
+  bool exact;    ///< whether the work of the cell is made exact
+  double above;  ///< |ΔE| (Frobenius norm) in a cell above which the rule is chosen
+};
+inline constexpr std::array<PathRuleProperties, 4> path_rule_table{{{PathRule::two_points, 2, false, 0.0},
+                                                                    {PathRule::three_points, 3, false, 1e-2},
+                                                                    {PathRule::three_points_exact, 3, true, 5e-2},
+                                                                    {PathRule::five_points_exact, 5, true, 1e-1}}};
+[[nodiscard]] constexpr const PathRuleProperties& properties_of(PathRule rule) {
+  return path_rule_table[std::size_t(rule)];
+}
+static_assert([] {
+  for (std::size_t k = 0; k < path_rule_table.size(); ++k)
+    if (path_rule_table[k].rule != PathRule(k)) return false;
+  return true;
+}());
+[[nodiscard]] constexpr bool is_exact(PathRule rule) { return properties_of(rule).exact; }
 
 /// One rule per cell, through all blocks. The rules stay the same while the equations of a step are solved, so that the
 /// force is a continuous function of the displacements.
 using PathRules = std::vector<PathRule>;
 
-/// Returns the rule for the largest |ΔE|² (square of the Frobenius norm) in a cell. Relative to the change of the
-/// energy the work of a cell is then wrong by some 10⁻⁹ at most.
+/// Returns the rule for the largest |ΔE|² in a cell. Relative to the change of the energy the work of a cell is then
+/// wrong by some 10⁻⁹ at most.
 [[nodiscard]] constexpr PathRule path_rule(double square_of_change) {
-  constexpr double three_points = 1e-2, exact = 5e-2, five_points = 1e-1;
-  return square_of_change > five_points * five_points     ? PathRule::five_points_exact
-         : square_of_change > exact * exact               ? PathRule::three_points_exact
-         : square_of_change > three_points * three_points ? PathRule::three_points
-                                                          : PathRule::two_points;
+  PathRule result = path_rule_table.front().rule;
+  for (const PathRuleProperties& each : path_rule_table)
+    if (square_of_change > each.above * each.above) result = each.rule;
+  return result;
 }
-[[nodiscard]] constexpr bool is_exact(PathRule rule) { return rule >= PathRule::three_points_exact; }
 
 /// Gauss rule on [−½, ½]; the weights have the sum 1.
 struct PathGaussRule {
   int count;
   std::array<double, 5> points, weights;
 };
-/// Gauss rules of all path rules, and the number of the one that a path rule uses.
+/// Gauss rules with the numbers of points that occur in path_rule_table.
 [[nodiscard]] const std::array<PathGaussRule, 3>& path_gauss_rules();
-[[nodiscard]] constexpr std::size_t gauss_rule_number(PathRule rule) {
-  return rule == PathRule::five_points_exact ? 2 : rule == PathRule::two_points ? 0 : 1;
+[[nodiscard]] inline const PathGaussRule& gauss_rule_of(PathRule rule) {
+  return *std::ranges::find(path_gauss_rules(), properties_of(rule).points, &PathGaussRule::count);
 }
 
 /// Direction of a derivative of D(x, Δ̂), the force of S̄ at the middle x = ½ (u⁺ + u₁) with the increment Δ̂ = u₁ − u⁺:

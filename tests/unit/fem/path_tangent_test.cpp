@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <ranges>
 
 #include "ricochet/problem/finite_elasticity.hpp"
 #include "support/bent_body.hpp"
@@ -56,8 +57,7 @@ Parameters path_law_parameters(const PathCase& of) {
   return {{"lambda", lambda}, {"mu", mu}};
 }
 
-constexpr std::array all_path_rules{PathRule::two_points, PathRule::three_points, PathRule::three_points_exact,
-                                    PathRule::five_points_exact};
+constexpr auto all_path_rules = path_rule_table | std::views::transform(&PathRuleProperties::rule);
 constexpr std::array path_variations{of_path_end, of_path_start, PathVariation{1.0, 0.0}, PathVariation{0.0, 1.0}};
 
 /// Derivative at 0 of a vector-valued function: central differences with the steps h, 2h and 4h, extrapolated to an

@@ -42,7 +42,8 @@ struct LargeBody {
 /// Some cells of a pack have other rules than the others.
 PathRules some_rules(const LargeBody& of) {
   PathRules rules(of.body->body.cell_material.size());
-  for (std::size_t cell = 0; cell < rules.size(); ++cell) rules[cell] = PathRule(cell * cell % 7 % 4);
+  for (std::size_t cell = 0; cell < rules.size(); ++cell)
+    rules[cell] = PathRule(cell * cell % 7 % path_rule_table.size());
   return rules;
 }
 
