@@ -37,20 +37,20 @@ Vector PivotedQr::solve(const Vector& right) const { return factor_.solve(right)
 
 Matrix PivotedQr::solve(const Matrix& right) const { return factor_.solve(right); }
 
-LeastNormSolver::LeastNormSolver(const Matrix& matrix, double threshold) : factor_(matrix.rows(), matrix.cols()) {
+template <class AnyMatrix>
+AnyLeastNormSolver<AnyMatrix>::AnyLeastNormSolver(const AnyMatrix& matrix, double threshold)
+    : factor_(matrix.rows(), matrix.cols()) {
   if (threshold > 0.0) factor_.setThreshold(threshold);
   factor_.compute(matrix);
 }
 
-Vector LeastNormSolver::solve(const Vector& right) const { return factor_.solve(right); }
-
-SixLeastNormSolver::SixLeastNormSolver(const SixMatrix& matrix, double threshold)
-    : factor_(matrix.rows(), matrix.cols()) {
-  factor_.setThreshold(threshold);
-  factor_.compute(matrix);
+template <class AnyMatrix>
+auto AnyLeastNormSolver<AnyMatrix>::solve(const AnyVector& right) const -> AnyVector {
+  return factor_.solve(right);
 }
 
-SixVector SixLeastNormSolver::solve(const SixVector& right) const { return factor_.solve(right); }
+template class AnyLeastNormSolver<Matrix>;
+template class AnyLeastNormSolver<SixMatrix>;
 
 Matrix upper_of_qr(const Matrix& matrix) {
   return Eigen::HouseholderQR<Matrix>(matrix).matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();

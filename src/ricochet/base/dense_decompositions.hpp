@@ -66,28 +66,25 @@ class PivotedQr {
 };
 
 /// Least-squares solution of minimum norm, A of any rank; `threshold` as in PivotedQr.
-class LeastNormSolver {
+template <class AnyMatrix>
+class AnyLeastNormSolver {
  public:
-  explicit LeastNormSolver(const Matrix& matrix, double threshold = 0.0);
+  using AnyVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, AnyMatrix::MaxRowsAtCompileTime, 1>;
+
+  explicit AnyLeastNormSolver(const AnyMatrix& matrix, double threshold = 0.0);
   [[nodiscard]] Index rank() const { return factor_.rank(); }
-  [[nodiscard]] Vector solve(const Vector& right) const;
+  [[nodiscard]] AnyVector solve(const AnyVector& right) const;
 
  private:
-  Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
+  Eigen::CompleteOrthogonalDecomposition<AnyMatrix> factor_;
 };
-
-/// Least-squares solution like that of LeastNormSolver for at most six equations and unknowns, without memory from the
-/// heap.
+using LeastNormSolver = AnyLeastNormSolver<Matrix>;
+/// At most six equations and unknowns, without memory from the heap.
 using SixMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 using SixVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
-class SixLeastNormSolver {
- public:
-  explicit SixLeastNormSolver(const SixMatrix& matrix, double threshold);
-  [[nodiscard]] SixVector solve(const SixVector& right) const;
-
- private:
-  Eigen::CompleteOrthogonalDecomposition<SixMatrix> factor_;
-};
+using SixLeastNormSolver = AnyLeastNormSolver<SixMatrix>;
+extern template class AnyLeastNormSolver<Matrix>;
+extern template class AnyLeastNormSolver<SixMatrix>;
 
 /// Returns R of A = Q R, square; A has at least as many rows as columns.
 [[nodiscard]] Matrix upper_of_qr(const Matrix& matrix);
