@@ -151,9 +151,13 @@ bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double 
   double kinetic_change = (4.0 / step) * (state.velocity + (2.0 / step) * inertial_increment_).dot(inertial_force_);
   velocity_correction_->start(end_);
   velocity_change_ = velocity_correction_->of_momenta(residual_, middle_, step, support_reaction_);
-  for (const auto& body : problem.free_bodies) correct_momenta(*body, step);
-  problem.mass.multiply(velocity_change_, scratch_);
-  kinetic_change += (end_velocity_ + 0.5 * velocity_change_).dot(scratch_);
+  const Vector* momentum_change = &velocity_correction_->momentum();
+  if (!problem.free_bodies.empty()) {
+    for (const auto& body : problem.free_bodies) correct_momenta(*body, step);
+    problem.mass.multiply(velocity_change_, scratch_);
+    momentum_change = &scratch_;
+  }
+  kinetic_change += (end_velocity_ + 0.5 * velocity_change_).dot(*momentum_change);
   end_velocity_ += velocity_change_;
 
   double defect = energy_defect(problem, step, kinetic_change);
@@ -169,7 +173,7 @@ bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double 
 /// Corrects the velocity by a relative defect of the energy, see close_balance().
 bool FiniteStrainStep::accept(double defect, double dissipation, double size) {
   const bool is_corrected =
-      std::abs(defect) > thresholds_.tolerance && velocity_correction_->find(end_velocity_, end_, -defect * size);
+      std::abs(defect) > thresholds_.tolerance && velocity_correction_->find(end_velocity_, -defect * size);
   if (log::enabled(log::Level::debug)) {
     log::debug(
         fmt::format("Newton: {} iterations, {:.2e} of the energy created, {:.2e} dissipated, velocities {}corrected",
