@@ -19,12 +19,6 @@ void NewtonProgress::start(double rounding, double renewal_price, double toleran
   restart();
 }
 
-bool NewtonProgress::tighten() {
-  if (tolerance_ <= thresholds_.least_tolerance) return false;
-  tolerance_ = thresholds_.least_tolerance;
-  return true;
-}
-
 void NewtonProgress::restart() {
   iterations_ = 0;
   least_ = std::numeric_limits<double>::infinity();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "ricochet/base/error.hpp"
@@ -34,8 +35,9 @@ class NewtonProgress {
   /// several ranks both must be those of the whole body, or the ranks would follow different advice.
   Advice assess(double correction, double increment);
   void count_renewal() { ++renewals_; }
-  /// Requires the accuracy that rounding permits from now on, until the next start(). Returns false if it already does.
-  [[nodiscard]] bool tighten();
+  /// Requires the accuracy that rounding permits from now on, until the next start().
+  void tighten() { tolerance_ = std::min(tolerance_, thresholds_.least_tolerance); }
+  [[nodiscard]] bool is_tight() const { return tolerance_ <= thresholds_.least_tolerance; }
   /// Whether the next iteration may be accelerated (linear_algebra/qr_anderson_acceleration.hpp): corrections decrease
   /// and are small relative to the increment, or they grow, or decrease slowly even with a new factorization. (The
   /// reason of the latter is a force that no factorization contains, such as that of contact, which rotates with the

@@ -66,11 +66,12 @@ TEST(NewtonProgress, TightensOnce) {
   progress.start(rounding, 100.0, 1e-4);
   static_cast<void>(progress.assess(1.0, increment));
   EXPECT_EQ(progress.assess(1e-5, increment), Advice::done);
-  EXPECT_TRUE(progress.tighten());
+  EXPECT_FALSE(progress.is_tight());
+  progress.tighten();
   EXPECT_EQ(progress.assess(1e-7, increment), Advice::proceed);
-  EXPECT_FALSE(progress.tighten());
+  EXPECT_TRUE(progress.is_tight());
   progress.start(rounding, 100.0);
-  EXPECT_FALSE(progress.tighten());
+  EXPECT_TRUE(progress.is_tight());
 }
 
 }  // namespace

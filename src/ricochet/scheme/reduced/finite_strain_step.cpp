@@ -6,6 +6,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/scheme/reduced/massless_contact_step.hpp"
+#include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
 
@@ -16,12 +17,29 @@ double largest_motion(const SemidiscreteProblem& problem, const Vector& motion) 
   return motion.reshaped(problem.dimension, problem.nodes.cols()).colwise().norm().maxCoeff();
 }
 
+/// Work of a force on contact nodes and on rigid bodies that move freely.
+double on_contact(const SemidiscreteProblem& problem, const Vector& force, const Vector& increment) {
+  double sum = 0.0;
+  for (const Index dof : problem.contact_dofs) sum += force[dof] * increment[dof];
+  for (Index dof = problem.cell_node_count() * problem.dimension; dof < increment.size(); ++dof)
+    sum += force[dof] * increment[dof];
+  return sum;
+}
+
+/// Work of reactions on the motion of the obstacles over a step.
+double obstacle_work(Stage& stage, const Vector& normal, const Vector& tangential, double step) {
+  if (stage.obstacle.normal.size() == 0) return 0.0;
+  project_motion(*stage.rows, stage.obstacle);
+  return step * (normal.dot(stage.obstacle.normal) -
+                 (tangential.size() > 0 ? tangential.dot(stage.obstacle.tangential) : 0.0));
+}
+
 }  // namespace
 
 void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) {
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
-  velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
+  balance_.analyse(problem, flight_->bodies());
   contact_right_hand_side_.resize(Index(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
   lowest_rules_ = problem.internal_force->path_rules();
@@ -48,16 +66,13 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   path_increment_ = 2.0 * (end_ - middle_);
   problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
   raises_ = 0;
-  part_ = std::clamp(step / whole_step_, thresholds_.min_part, 1.0);
   has_reactions_ = false;
   acceleration_.restart();
   if (problem.contact.follows_motion()) lagged_.start(state);
   lagged_row_force_.setZero(problem.dof_count());
   end_contact_force_.setZero(problem.dof_count());
   mean_contact_force_.setZero(problem.dof_count());
-  energy_start_ = energy_step_ == state.step
-                      ? last_energy_
-                      : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
+  balance_.start(problem, state, step / whole_step_);
 }
 
 /// Computes D and f(u₁).
@@ -65,7 +80,7 @@ void FiniteStrainStep::evaluate(const SemidiscreteProblem& problem, double step,
   const InternalForce& elastic = *problem.internal_force;
   path_increment_ = 2.0 * (end_ - middle_);
   elastic.path_force(middle_, path_increment_, path_rules_, force_);
-  const BranchStep branches = branch_step(step, state);
+  const BranchStep branches{middle_, path_increment_, state.displacement, end_, state.internal_strain, step};
   if (const ViscousForce* const viscous = elastic.viscous(); viscous != nullptr)
     viscous->add_mean_force(branches, force_);
   if (contact_cells_) contact_cells_->evaluate(end_, end_force_);
@@ -89,7 +104,8 @@ void FiniteStrainStep::find_imbalance(const SemidiscreteProblem& problem, double
 }
 
 /// Computes b of the stage: the residual at the middle.
-void FiniteStrainStep::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
+void FiniteStrainStep::require_balance(const SemidiscreteProblem& problem, double step, const State& state,
+                                       Stage& stage) {
   find_imbalance(problem, step, state, stage.right_hand_side.force);
   if (problem.contact.follows_motion() && has_reactions_) {
     lagged_row_force_.setZero();
@@ -171,12 +187,12 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
   before_ = state.displacement;
   if (problem.has_rotating_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step, stage);
   state.displacement = end_;
-  state.internal_strain = internal_;
-  state.velocity = end_velocity_;
-  state.acceleration = (4.0 / (step * step)) * inertial_increment_ + (1.0 / step) * velocity_change_;
+  state.internal_strain = balance_.internal_strain();
+  state.velocity = balance_.end_velocity();
+  state.acceleration = (4.0 / (step * step)) * inertial_increment_ + (1.0 / step) * balance_.velocity_change();
   follow_without_inertia(problem, increment, step, state);
   equations_.store_contact(stage, solution, step, state);
-  for (Index i = 0; i < problem.supports.size(); ++i) state.forces.support_reaction[i] = support_reaction_[i];
+  state.forces.support_reaction = balance_.support_reaction();
   loads_.store_varying(state.forces.varying_load);
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
@@ -184,8 +200,56 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
   }
   contact_.update_drift(problem, before_, state);
   if (problem.contact.follows_motion()) lagged_.remember(state);
-  energy_step_ = state.step + 1;
-  last_energy_ = energy_;
+  balance_.finish(state);
+}
+
+/// Computes the contact forces of the last iteration, their works, and the residual R of all forces at the middle.
+void FiniteStrainStep::find_residual(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
+                                     const StageSolution& solution) {
+  const bool has_contact = problem.has_contact_dofs();
+  if (has_contact) {
+    if (problem.has_rotating_obstacles())
+      equations_.observe_step(problem, state.displacement, state.time, end_, step, stage);
+    motion_ = end_ - state.displacement;
+    const auto add = [&](const Vector& normal, const Vector& tangential, Vector& force) {
+      force.setZero(problem.dof_count());
+      stage.rows->add_force(normal, tangential, force);
+      return on_contact(problem, force, motion_) - obstacle_work(stage, normal, tangential, step);
+    };
+    work_of_mean_ = add(solution.acting_normal(), solution.acting_tangential(), mean_contact_force_);
+    work_at_end_ = add(solution.normal_reaction, solution.tangential_reaction, end_contact_force_);
+  }
+  find_imbalance(problem, step, state, residual_);
+  if (!has_contact) return;
+  residual_ += mean_contact_force_;
+  if (problem.contact.follows_motion()) {
+    problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
+                                          residual_);
+  }
+}
+
+/// Closes the balance of momentum and energy. Returns false if the iterations must go on.
+bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
+                                     const StageSolution& solution, double correction) {
+  find_residual(problem, step, state, stage, solution);
+  const double created = problem.contact.follows_motion() ? correction * solution.normal_reaction.sum() : 0.0;
+  const SolvedStep solved{problem,
+                          step,
+                          state,
+                          loads_,
+                          solution,
+                          middle_,
+                          end_,
+                          path_increment_,
+                          inertial_increment_,
+                          inertial_force_,
+                          mean_contact_force_,
+                          work_of_mean_,
+                          work_at_end_,
+                          created};
+  if (balance_.close(solved, residual_, !progress_.is_tight()) == StepBalance::Verdict::closed) return true;
+  progress_.tighten();
+  return false;
 }
 
 /// Solves the linear stage of an iteration.
@@ -195,7 +259,7 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
   Stage& stage = stages.stage(number);
   last_middle_ = middle_;
   last_end_ = end_;
-  balance(problem, step, state, stage);
+  require_balance(problem, step, state, stage);
   if (!problem.has_contact_dofs()) {
     stage.conditions.eligible.clear();
     stage.motion.reset();

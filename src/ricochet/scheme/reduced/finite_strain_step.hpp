@@ -8,8 +8,8 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
+#include "ricochet/scheme/reduced/step_balance.hpp"
 #include "ricochet/scheme/reduced/step_loads.hpp"
-#include "ricochet/scheme/reduced/velocity_correction.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 #include "ricochet/step/newton_progress.hpp"
@@ -22,8 +22,8 @@
 ///   D = ∫ F_x S̄ : ∇φ,   S̄ the mean of the stress along this path (fem/strain_path.hpp),
 ///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L̄ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
 /// and Coulomb's law at the end. Every S̄ is symmetric, so D has neither resultant nor moment about x, and linear and
-/// angular momentum change by the impulses of contact and loads alone. A rigid motion has no stress: bodies that spin
-/// do not swell. D does the work W(u₁) − W(u⁺) on u₁ − u⁺, and therefore
+/// angular momentum change by the impulses of contact, loads, supports and mass damping alone. A rigid motion has no
+/// stress: bodies that spin do not swell. D does the work W(u₁) − W(u⁺) on u₁ − u⁺, and therefore
 ///   E₁ − E₀ = work of L̄, supports and damping + ℓ + μ ρ·HΔ − d',   ℓ = (L₁ − L₀)·(½(u₀+u₁) − x)_c,
 ///   d' = [W(u₀) − (L₀+Hᵀρ̄)·u_c0] − [W(u⁺) − (L₀+Hᵀρ̄)·u_c⁺] + μ ρ·HΔ − ρ̄·HΔ,   ρ̄ = (1−μ) ρ̄_path + μ ρ.
 /// L̄·Δ_c + ℓ is the work of linearly changing loads on contact nodes whose positions over the step have the mean x.
@@ -31,12 +31,11 @@
 /// W(u) − (L₀+Hᵀρ)·u_c at u_f0, so that d' ≥ 0 is the energy that the jump loses, and for μ = 0 d' = 0; this is then
 /// massless_contact_step.hpp. Else d' differs by terms of the third order in J and ΔE.
 ///
-/// Iterations end when the increment is accurate enough (StageSolve::newton_tolerance). What they leave of the forces,
-/// the residual R, and what else is missing in the balance is then made up for by the velocities at the end
-/// (velocity_correction.hpp): momenta change by impulses, and energy by the terms above, to rounding, with any
-/// tolerance. Contact conditions hold to rounding in every iteration. d' counts as numerical dissipation as far as the
-/// step really loses it: couples of contact forces, which cancel their moments, may do work as well, and d' < 0 counts
-/// as zero. No step creates energy. (docs/finite-strain-proofs.md has the proof.)
+/// Iterations end when the increment is accurate enough (StageSolve::newton_tolerance). Velocities at the end then
+/// compensate for the residual R of the forces and for all other errors of the balance (step_balance.hpp): momenta
+/// change by impulses, and energy by the terms above, to rounding, with any tolerance. Contact conditions hold to
+/// rounding in every iteration. d' counts as numerical dissipation as far as the step really loses it: couples of
+/// contact forces, which cancel their moments, may do work as well, and d' < 0 counts as zero.
 ///
 /// A pressure P(u, t) that follows the surface is added as P(x), with the mean of the pressures at both ends, to L̄ in
 /// the equations at x, so that over a closed surface it has neither resultant nor moment about x; as P(u₁) to L₁; and
@@ -55,14 +54,9 @@
 /// (1999) 1021–1045.)
 namespace ricochet {
 
-/// Thresholds of the balance of energy; defects are relative to kinetic and elastic energy.
-struct EnergyThresholds {
-  double tolerance = 1e-15;      ///< defect that velocities need not correct
-  double near_rounding = 1e-12;  ///< admissible defect that they cannot correct, if more iterations do not help
+/// Thresholds of the iterations.
+struct FiniteStrainThresholds {
   double near_solution = 1e-2;   ///< correction relative to the increment, at which changes of strains are known
-  double max_defect = 1e-8;      ///< of a full step, uncorrected; of a substep times its part of the full step,
-  double min_part = 0.1;         ///< which counts as at least this
-  double max_corrected = 1e-2;   ///< up to which velocities compensate a defect
   int max_pair_iterations = 80;  ///< iterations after which pairs of facets that keep changing are frozen
 };
 
@@ -75,7 +69,7 @@ class FiniteStrainStep {
                                                                    ActingReaction acting);
   void advance(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state, StageSolve& stages,
                Vector& increment);
-  [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
+  [[nodiscard]] const StepCorrections& corrections() const { return balance_.corrections(); }
   /// Middle x of the last step.
   [[nodiscard]] const Vector& middle() const { return middle_; }
 
@@ -99,37 +93,28 @@ class FiniteStrainStep {
   /// Follows the advice on the progress of an iteration. Throws Error(not_converged).
   void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Iteration& iteration,
                     StageSolve& stages);
-  void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
+  void require_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step, const State& state,
                        StageSolve& stages, Stage& stage);
   Iteration correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
   void accelerate(const SemidiscreteProblem& problem, const State& state);
-  // After the last iteration (finite_strain_step_balance.cpp):
-  [[nodiscard]] bool close_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
-                                   const StageSolution& solution, double correction);
-  void leave_out_created_work(const SemidiscreteProblem& problem, const StageSolution& solution, double correction);
   void find_residual(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
                      const StageSolution& solution);
-  void correct_momenta(const FreeMotion& body, double step);
-  void find_stored_energy(const SemidiscreteProblem& problem, double step, const State& state);
-  [[nodiscard]] double find_dissipation(const SemidiscreteProblem& problem, double step, const State& state,
-                                        const StageSolution& solution);
-  [[nodiscard]] double energy_defect(const SemidiscreteProblem& problem, double step, double kinetic_change);
-  [[nodiscard]] bool accept(double defect, double dissipation, double size);
-  [[nodiscard]] BranchStep branch_step(double step, const State& state) const;
+  [[nodiscard]] bool close_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
+                                   const StageSolution& solution, double correction);
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
   void throw_if_inverted(const SemidiscreteProblem& problem);
   /// Evaluates the forces, and halves the last correction as long as it inverts cells. Returns whether it did.
   [[nodiscard]] bool evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state);
 
-  EnergyThresholds thresholds_;
+  FiniteStrainThresholds thresholds_;
   std::unique_ptr<FlightPrediction> flight_;
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   PathRules lowest_rules_, path_rules_;                 ///< of D, the latter fixed while the equations are solved
   int raises_ = 0;                                      ///< possible ones so far in this step: near and at its solution
   NewtonProgress progress_;
-  std::unique_ptr<VelocityCorrection> velocity_correction_;
+  StepBalance balance_;
   EndContact contact_;
   LaggedRows lagged_;    ///< for rows that follow the motion
   Reactions reactions_;  ///< of the previous iteration in this step, if any
@@ -137,31 +122,19 @@ class FiniteStrainStep {
   QrAndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   StepEquations equations_;
   StepLoads loads_;
-  StepCorrections corrections_;
-  long energy_step_ = -1;             ///< step whose end has been evaluated
-  double last_energy_ = 0.0;          ///< V there
-  double viscous_dissipation_ = 0.0;  ///< 𝒟
-  double energy_ = 0.0, energy_start_ = 0.0, end_weight_ = 0.0;
   double whole_step_ = 0.0;                        ///< length of a full step
-  double part_ = 1.0;                              ///< fraction of it that this step covers
   double work_of_mean_ = 0.0, work_at_end_ = 0.0;  ///< ρ̄·HΔ and ρ·HΔ, less the obstacles' motion
-  Vector base_, middle_, end_, increment_, force_, end_force_, end_contact_force_, mean_contact_force_;
+  Vector base_, middle_, end_, force_, end_force_, end_contact_force_, mean_contact_force_;
   Vector path_increment_;        ///< u₁ − u⁺
-  Vector path_start_;            ///< u⁺
-  Vector force_at_start_;        ///< L₀ + P₀ + Hᵀρ̄
-  Vector internal_;              ///< A₁
   Vector inertial_increment_;    ///< x − (u₀ + ½h v₀), so that v₁ − v₀ = (4/h)(x − base)
   Vector inertial_force_;        ///< M times that
   Vector half_increment_;        ///< x − u₀
-  Vector mean_external_force_;   ///< L̄ + P(x) + Hᵀρ̄
   Vector linearization_motion_;  ///< contact motion about which conditions are linear
   Vector contact_residual_;      ///< L₁ + P_c(u₁) − f_c(u₁) − 2 b_c
   Vector residual_;              ///< R
-  Vector support_reaction_;
-  Vector end_velocity_, velocity_change_;  ///< v₁; what momenta and energy require in addition
   Vector next_end_, contact_right_hand_side_, damping_force_, before_, last_middle_, last_end_;
   Vector motion_;            ///< of an iteration, to be measured
-  Vector scratch_;           ///< a force that is evaluated for its error alone; M times the change of the velocity
+  Vector scratch_;           ///< a force that is evaluated for its error alone
   Vector point_, image_;     ///< of an accelerated iteration
   Vector lagged_row_force_;  ///< of the reactions, along rows less the lagged ones
 };
