@@ -138,7 +138,10 @@ int main(int argc, char** argv) {
   std::cout << "case,description,friction,crossings,method,created,lost,penetration,variation,largest,failure\n";
   for (unsigned number = first; number < first + count; ++number) {
     const RandomCase random_case = make_case(kind, number, folder);
-    if (keeps) std::ofstream(folder / fmt::format("case_{}.toml", number)) << random_case.text;
+    if (keeps) {
+      std::ofstream(folder / fmt::format("case_{}.toml", number))
+          << random_case.text << fmt::format("# time.step = {:.17g}, {} steps\n", random_case.step, random_case.steps);
+    }
     for (const Method& method : methods) {
       if (!method.takes_friction && random_case.friction > 0.0) continue;
       if (std::string(method.name).find(wanted) == std::string::npos) continue;
