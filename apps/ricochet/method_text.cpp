@@ -68,6 +68,11 @@ void print_method(const RunSummary& summary) {
   const double heat = summary.digest("viscous_dissipation").last, energy = summary.energy_scale();
   if (heat > 0.0 && energy > 0.0)
     fmt::print("  relaxation dissipated {} of the largest energy as heat\n", percent(heat / energy));
+  if (summary.velocity_corrections && summary.velocity_corrections->steps > 0) {
+    const VelocityCorrections& found = *summary.velocity_corrections;
+    fmt::print("  LARGE CORRECTIONS OF VELOCITIES in {} of {}: up to {} of the energy, at t = {:.6g}\n", found.steps,
+               counted(summary.steps, "step"), percent(found.largest), found.time);
+  }
   const double iterations = summary.digest("newton_rounds").maximum;
   if (iterations > 0.0) fmt::print("  Newton's method required up to {:.0f} iterations in a step\n", iterations);
 }

@@ -17,7 +17,7 @@ from history_columns import documented_columns  # noqa: E402
 TIME_LIMIT = 300  # seconds
 OUT_OF_SIGHT = 100  # sizes of the model: a larger gap stands for none
 # Errors, which rounding or the time step decides, are not compared.
-ENERGIES = {name for name, _, unit, _ in documented_columns() if unit == "energy"} - {"energy_residual", "integration_error"}
+ENERGIES = {name for name, _, unit, _ in documented_columns() if unit == "energy"} - {"energy_residual", "integration_error", "velocity_correction"}
 # Columns by the last part of their names: (class of quantities that are compared, kind, dimensions).
 VECTORS = {"contact_force": ("force", "vector", "force"), "force": ("force", "vector", "force"), "support": ("force", "vector", "force"),
            "reaction_tangential": ("force", "vector", "force"), "momentum": ("momentum", "vector", "momentum"),

@@ -195,6 +195,12 @@ class UnsettledContact(TypedDict):
     gap: Real
     place: list[float]
 
+class VelocityCorrections(TypedDict):
+    steps: int
+    first_time: float | None
+    largest: Real
+    time: float
+
 class Reactions(TypedDict):
     acting: str
     least_end_weight: Real | None
@@ -288,6 +294,7 @@ class Summary(TypedDict):
     energy_scale: Real
     energy_budget: EnergyBudget | None
     reactions: Reactions | None
+    velocity_corrections: VelocityCorrections | None
     unsettled_contacts: list[UnsettledContact]
     contacts: list[Contact]
     probes: list[Probe]

@@ -21,7 +21,7 @@ COLUMNS = [
      "support_work obstacle_work damping_work numerical_dissipation energy_residual contact_force* momentum* angular_momentum° "
      "max_rotation active_contacts sticking slipping max_penetration iterations"),
     ("meshes of 2 to 20 bodies", "momentum.BODY*"),
-    ("laws of finite strain", "integration_error newton_rounds"),
+    ("laws of finite strain", "integration_error newton_rounds velocity_correction"),
     ("`relaxation` of a material", "viscous_dissipation"),
     ("large sliding between bodies", "re_pairing_work unsettled_gap"),
     ("surfaces that touch themselves", "left_out_points"),

@@ -13,7 +13,10 @@ struct Kind {
   std::string name, plane, supports;
 };
 
-CaseRun run_of(const Kind& kind, const std::string& mass) {
+/// Method and initial conditions: any, for tests of a velocity that they choose.
+const std::string any_method = "scheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 0.01\nend = 0.1\n";
+
+CaseRun run_of(const Kind& kind, const std::string& mass, const std::string& method = any_method) {
   const bool flat = kind.name != "space";
   const std::string mesh =
       flat ? mesh_geometry("corrected-2d",
@@ -29,7 +32,7 @@ CaseRun run_of(const Kind& kind, const std::string& mass) {
                  "\"neo-hookean\"\n[obstacle.floor]\ntype = \"plane\"\n" +
                  (flat ? "point = [0, -9]\nnormal = [0, 1]\n" : "point = [0, -9, 0]\nnormal = [0, 1, 0]\n") +
                  "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" + kind.supports + "[mass]\ntype = \"" +
-                 mass + "\"\n[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 0.01\nend = 0.1\n");
+                 mass + "\"\n[time]\n" + method);
 }
 
 /// Sum and moment about the origin of forces or momenta at these positions.
@@ -150,6 +153,35 @@ TEST(VelocityCorrection, GivesBodiesTheMomentaOfAResidual) {
     moving.expect_supported(added);
     moving.expect_momentum_of(added);
   });
+}
+
+/// On nodes with inertia the increment of a step is the mean of its velocities, times its length, before they are
+/// corrected: what they have in addition at the end is the correction.
+TEST(VelocityCorrection, ReportsTheKineticEnergyThatStepsAdd) {
+  constexpr double step = 0.02;  // which no step must be cut for
+  for (const std::string scheme : {"reduced-kane", "mean-reaction", "reduced-midpoint"}) {
+    CaseRun run = run_of({"plane", "strain", ""}, "equivalent",
+                         "scheme = \"" + scheme +
+                             "\"\nstep = 0.02\nend = 0.6\n[solver]\nnewton_tolerance = 1e-13\n"
+                             "[initial]\ndisplacement = [\"0.3*x\", \"-0.2*y\"]\n");
+    const SemidiscreteProblem& problem = run.problem();
+    const auto kinetic = [&](const Vector& velocity) { return 0.5 * problem.mass.quadratic_form(velocity); };
+    Vector displacement = run.state().displacement, velocity = run.state().velocity;
+    double largest = 0.0;
+    run.run(
+        [&] {
+          const Vector straight = (2.0 / step) * (run.state().displacement - displacement) - velocity;
+          displacement = run.state().displacement;
+          velocity = run.state().velocity;
+          const StepCorrections reported = run.scheme().last_step().corrections;
+          const double energy = kinetic(velocity) + problem.internal_force->energy(displacement);
+          EXPECT_NEAR(reported.velocity_correction, kinetic(velocity) - kinetic(straight), 1e-12 * energy) << scheme;
+          EXPECT_NEAR(reported.energy_at_end, energy, 1e-12 * energy) << scheme;
+          largest = std::max(largest, std::abs(reported.velocity_correction) / energy);
+        },
+        false);
+    EXPECT_GT(largest, 1e-5) << scheme;
+  }
 }
 
 /// A step without a residual leaves the velocity as it is, and the end of an earlier step has no effect on a later one.

@@ -57,6 +57,12 @@ function energyChange(j: Judgement, { energy_budget: budget }: Summary): EnergyC
 const budgetWords = ({ energy_budget: budget }: Summary): string =>
   budget ? `; the method created at most ${percent(toNumber(budget.created_by_method))} and lost at most ${percent(toNumber(budget.lost_by_method))} of the largest energy` : "";
 
+/** Corrections of the velocities that a user should know of; "" if there are none. */
+function correctionWords({ velocity_corrections: found, steps }: Summary): string {
+  if (!found || found.steps === 0) return "";
+  return `; corrections of velocities to close the balance changed up to ${percent(toNumber(found.largest))} of the energy in a step, and too much in ${found.steps} of ${steps} steps`;
+}
+
 export function energyFinding(j: Judgement, summary: Summary): Finding {
   const what = j.is_isolated ? "Energy" : "Energy in contact";
   if (j.energy_broken_at !== null) return broken(what, j.energy_broken_at);
@@ -64,9 +70,10 @@ export function energyFinding(j: Judgement, summary: Summary): Finding {
   if (!(j.energy_scale > 0)) return { what, grade: "none", words: "the body has no energy", short: "none", detail: "" };
   const { gain, loss, whole } = energyChange(j, summary);
   const source = j.is_isolated ? "total energy" : "contact work less numerical dissipation";
-  const detail = `${source} relative to ${whole}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)}${budgetWords(summary)}; the energy account closes to ${number(j.energy_residual / j.energy_scale, 2)}`;
+  const detail = `${source} relative to ${whole}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)}${budgetWords(summary)}${correctionWords(summary)}; the energy account closes to ${number(j.energy_residual / j.energy_scale, 2)}`;
   const finding = (grade: Grade, words: string, short = words): Finding => ({ what, grade, words, short, detail });
   if (gain > 0.02) return finding("poor", gain > 1 ? `created: up to ${number(1 + gain, 3)} times the initial energy` : `created: +${percent(gain)}`);
+  if (correctionWords(summary) !== "" && gain <= 0.005 && loss < 0.01) return finding("fair", "conserved with large corrections of velocities", "large corrections");
   if (Math.max(gain, loss) < 1e-8) return finding("good", "conserved to rounding", "conserved");
   if (gain > loss) return finding(gain > 0.005 ? "fair" : "good", `conserved to within +${percent(gain)}`, `+${percent(gain)}`);
   return finding(loss < 0.01 ? "good" : "fair", loss < 0.01 ? `conserved to within ${percent(loss)}` : `the method lost ${percent(loss)}`, `−${percent(loss)}`);

@@ -279,6 +279,23 @@ test("a force is in doubt where frozen steps have left gaps", async () => {
   }
 });
 
+test("large corrections of velocities are no good energy balance", async () => {
+  for (const steps of [3, 0]) {
+    const run = shortDisc(`corrected${steps}`);
+    const file = join(run, "summary.json");
+    const summary = JSON.parse(readFileSync(file, "utf8"));
+    summary.velocity_corrections = { steps, first_time: steps ? 0.002 : null, largest: 0.0025, time: 0.003 };
+    writeFileSync(file, JSON.stringify(summary));
+    const view = await open(report(`corrected${steps}`, run));
+    const energy = await view.page.$$eval(".findings dt", (all) => all.filter((dt) => dt.textContent.startsWith("Energy"))
+      .map((dt) => `${dt.nextElementSibling.className}: ${dt.nextElementSibling.textContent} (${dt.nextElementSibling.title})`)[0]);
+    assert.equal(/corrections of velocities to close the balance changed up to 0.25 % of the energy in a step, and too much in 3 of/.test(energy), steps > 0, energy);
+    if (steps) assert.doesNotMatch(energy, /^good/);
+    assert.deepEqual(view.complaints, []);
+    await view.close();
+  }
+});
+
 test("unchecked penetration has no good mark", async () => {
   const run = shortDisc("unwatched");
   const file = join(run, "summary.json");

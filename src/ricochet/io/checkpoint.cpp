@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view magic = "RICOCHET";
-constexpr std::uint32_t format = 13;
+constexpr std::uint32_t format = 14;
 constexpr std::size_t retained_checkpoints = 2;
 constexpr std::size_t head_size = magic.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 

@@ -113,6 +113,16 @@ struct ActingReactions {
   long mean_steps = 0, end_steps = 0;
 };
 
+/// Corrections of the velocities that close the balance of energy of steps at finite strain. Shares are kinetic
+/// energies that they add or remove in a step, relative to kinetic and elastic energy at its end.
+struct VelocityCorrections {
+  /// Share above which they are reported: a hundred times what any admissible tolerance of Newton's method leaves.
+  static constexpr double noticeable = 1e-4;
+  long steps = 0;                                               ///< with a share above it
+  double first_time = std::numeric_limits<double>::infinity();  ///< of the first one; infinite if there is none
+  double largest = 0.0, time = 0.0;                             ///< largest share of all steps
+};
+
 /// Adaptive steps.
 struct AdaptiveSteps {
   double tolerance = 0.0, time = 0.0;
@@ -160,7 +170,8 @@ struct RunSummary {
   long impacts_left_out = 0;
   std::optional<PeakStressDescription> peak_stress;
   MethodEnergy method_energy = {};
-  std::optional<ActingReactions> reactions = {};  ///< null: scheme without a choice
+  std::optional<ActingReactions> reactions = {};                 ///< null: scheme without a choice
+  std::optional<VelocityCorrections> velocity_corrections = {};  ///< null: scheme or law without them
   RotationReport rotation = {};
   std::vector<PairSliding> sliding = {};         ///< per contact between bodies
   std::vector<UnsettledContact> unsettled = {};  ///< contacts with large sliding in which frozen steps have left gaps

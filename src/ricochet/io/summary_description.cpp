@@ -102,6 +102,16 @@ void describe(SummaryVisitor& visit, ActingReactions& acting) {
   visit("steps_without_mean", acting.end_steps, "number of steps with contact for which no mean was found");
 }
 
+void describe(SummaryVisitor& visit, VelocityCorrections& corrections) {
+  const bool any = corrections.steps > 0;
+  visit.type("VelocityCorrections");
+  visit("steps", corrections.steps, "number of steps in which they changed more than 10⁻⁴ of the energy");
+  visit("first_time", IfKnown{any, corrections.first_time}, "time of the first such step; null if there is none");
+  visit("largest", Real{corrections.largest},
+        "largest change of the kinetic energy by them in a step, divided by kinetic and elastic energy at its end");
+  visit("time", corrections.time, "time of that step");
+}
+
 void describe(SummaryVisitor& visit, UnsettledContact& contact) {
   visit.type("UnsettledContact");
   visit("contact", contact.contact, "number of the entry of `[[contact]]`");
@@ -273,6 +283,9 @@ void describe(SummaryVisitor& visit, RunSummary& run) {
   visit("energy_budget", IfKnown{run.is_recorded(), run.method_energy},
         "energy that the method lost or created, beside everything else; null before the first row of the history");
   visit("reactions", run.reactions, "contact forces that acted; null for schemes without a choice");
+  visit("velocity_corrections", run.velocity_corrections,
+        "corrections of the velocities that close the balance of energy of steps at finite strain; null for laws and "
+        "schemes without them");
   visit("unsettled_contacts", run.unsettled,
         "contacts with large sliding where frozen steps have left gaps or overlaps");
   visit("contacts", run.contacts, "entries of `[[contact]]`, or the pairs of bodies that they stand for");

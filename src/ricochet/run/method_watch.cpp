@@ -1,12 +1,17 @@
 #include "ricochet/run/method_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// Energy relative to the largest one below which a body is at rest: its changes are rounding.
+constexpr double energy_at_rest = 1e-12;
 
 std::string name_of(ActingReaction acting) {
   switch (acting) {
@@ -25,6 +30,16 @@ std::string name_of(ActingReaction acting) {
 void MethodWatch::persist(const SnapshotVisitor& visit) {
   visit.numbers("numbers", least_, largest_, last_, least_weight_, largest_weight_);
   visit.integers("steps", {0, std::numeric_limits<std::int64_t>::max()}, mean_steps_, end_steps_);
+  if (!velocity_corrections_) return;
+  VelocityCorrections& found = *velocity_corrections_;
+  visit.numbers("velocity_corrections", found.first_time, found.largest, found.time, largest_energy_);
+  visit.integers("corrected_steps", {0, std::numeric_limits<std::int64_t>::max()}, found.steps);
+}
+
+void MethodWatch::enter_part(const StepCorrections& corrections) {
+  const double energy = corrections.energy_at_end;
+  largest_energy_ = std::max(largest_energy_, energy);
+  if (energy > energy_at_rest * largest_energy_) corrected_share_ += std::abs(corrections.velocity_correction) / energy;
 }
 
 void MethodWatch::enter_step(const State& state, double method_energy) {
@@ -32,6 +47,19 @@ void MethodWatch::enter_step(const State& state, double method_energy) {
   least_ = std::min(least_, last_);
   largest_ = std::max(largest_, last_);
   if (acting_ && *acting_ != ActingReaction::end) enter_weight(state.forces);
+  if (velocity_corrections_) enter_velocity_correction(state.time);
+}
+
+void MethodWatch::enter_velocity_correction(double time) {
+  VelocityCorrections& found = *velocity_corrections_;
+  const double share = std::exchange(corrected_share_, 0.0);
+  if (share > found.largest) {
+    found.largest = share;
+    found.time = time;
+  }
+  if (!(share > VelocityCorrections::noticeable)) return;
+  ++found.steps;
+  found.first_time = std::min(found.first_time, time);
 }
 
 /// Enters the weight of a step in which contact presses; weights of other steps act on nothing.

@@ -80,6 +80,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
           open_history(*model.problem.ranks, directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns()),
       model_(model),
+      scheme_(scheme),
       body_names_(names_of_all_bodies(input, model)),
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.sizes.dofs, factor_entries), *model.problem.ranks,
@@ -88,7 +89,8 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, *model.problem.ranks, column_index(recorder_.columns(), "max_rotation")),
-      method_(scheme.traits_for(model.problem).acting_reactions, *model.problem.ranks),
+      method_(scheme.traits_for(model.problem).acting_reactions, *model.problem.ranks,
+              scheme.traits().corrects_velocities && has_finite_strain(model.body)),
       history_every_(input.output.history_every.value_or(scheme.traits().history_every)) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
@@ -119,6 +121,7 @@ double Recording::method_energy(const State& state, EnergyAccount& account) cons
 
 void Recording::enter_part(const State& state, EnergyAccount& account) {
   checks_.enter_part(state);
+  method_.enter_part(scheme_.last_step().corrections);
   penetration_.check_part(state);
   impacts_.enter_step(state, method_energy(state, account));
 }
@@ -216,6 +219,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.checks = checks_.results();
   summary.method_energy = method_.energy(summary.energy_scale());
   summary.reactions = method_.reactions();
+  summary.velocity_corrections = method_.velocity_corrections();
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();

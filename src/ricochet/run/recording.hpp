@@ -74,6 +74,7 @@ class Recording {
   HistoryDigest digest_;
   RunChecks checks_;
   const Model& model_;
+  const Scheme& scheme_;
   std::vector<std::string> body_names_;
   ImpactRecorder impacts_;
   PeakStress peak_stress_;

@@ -112,6 +112,19 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   }
 }
 
+void judge_velocity_corrections(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+  if (!summary.velocity_corrections || summary.velocity_corrections->steps == 0) return;
+  if (is_rounding_of_energy(summary.energy_scale(), problem, state)) return;
+  const VelocityCorrections& found = *summary.velocity_corrections;
+  log::warning(fmt::format(
+      "in {} of {}, from t = {:.6g} on, corrections of velocities, which close the balance of energy, changed more "
+      "than {:g} % of kinetic and elastic energy, up to {:.2g} % at t = {:.6g} (velocity_correction of the history): "
+      "strains change too much in a step, and vibrations carry an error of this size; a smaller time.step makes it "
+      "smaller, a smaller solver.newton_tolerance does not",
+      found.steps, counted(summary.steps, "step"), found.first_time, 100.0 * VelocityCorrections::noticeable,
+      100.0 * found.largest, found.time));
+}
+
 void judge_unsettled(const RunSummary& summary) {
   for (const UnsettledContact& contact : summary.unsettled) {
     if (contact.share <= UnsettledContact::doubtful) continue;

@@ -28,6 +28,9 @@ struct StepCorrections {
   /// the displacement: spurious energy of either sign.
   double integration_error = 0.0;
   double viscous_dissipation = 0.0;  ///< of viscoelastic branches, never negative
+  /// Kinetic energy that a correction of the velocities has added to close the balance of the step: no term of it.
+  double velocity_correction = 0.0;
+  double energy_at_end = 0.0;  ///< kinetic and elastic energy after such a correction; 0 if the scheme makes none
 };
 
 /// Valid until the scheme's next step, and so is what it refers to.

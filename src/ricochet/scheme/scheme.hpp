@@ -50,6 +50,8 @@ struct SchemeTraits {
   /// True if, at finite strain, its steps change the angular momentum about current positions only by the moments of
   /// external forces about the positions at which these act.
   bool conserves_moments_at_finite_strain = false;
+  /// True if, at finite strain, corrections of the velocities close the balance of its steps, and are reported.
+  bool corrects_velocities = false;
   /// True if its contact forces create hardly any energy with a mass without inertia on contact nodes.
   bool suits_singular_mass = false;
   /// True if nodes with inertia that friction holds keep a velocity of alternating sign.

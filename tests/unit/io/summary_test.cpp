@@ -170,7 +170,15 @@ TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   summary.sliding.push_back({0, 0.25, 0.125, 1.5, {2.0, 3.0}, 0.75});
   summary.sliding.push_back({1, 0.0625, 0.125, 1.5, {2.0, 3.0}});
   summary.unsettled.push_back({2, 0.5, 7, 0.25, 0.75, -0.125, {4.0, 5.0}});
+  EXPECT_FALSE(read_back(summary).velocity_corrections.has_value());
+  summary.velocity_corrections.emplace();
+  EXPECT_EQ(read_back(summary).velocity_corrections->first_time, INFINITY);
+  summary.velocity_corrections = {5, 0.25, 0.5, 0.75};
   const RunSummary back = read_back(summary);
+  EXPECT_EQ(back.velocity_corrections->steps, 5);
+  EXPECT_EQ(back.velocity_corrections->first_time, 0.25);
+  EXPECT_EQ(back.velocity_corrections->largest, 0.5);
+  EXPECT_EQ(back.velocity_corrections->time, 0.75);
   ASSERT_EQ(back.unsettled.size(), 1U);
   EXPECT_EQ(back.unsettled[0].contact, 2);
   EXPECT_EQ(back.unsettled[0].share, 0.5);

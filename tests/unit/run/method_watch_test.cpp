@@ -47,6 +47,41 @@ TEST(MethodWatch, TellsTheWeightsThatActed) {
   EXPECT_EQ(of_end.reactions()->mean_steps, 0);
 }
 
+/// Enters a step of parts in which corrections add these energies, and which ends with this energy.
+void enter_corrections(MethodWatch& watch, double time, const std::vector<double>& added, double energy) {
+  for (const double each : added) watch.enter_part({.velocity_correction = each, .energy_at_end = energy});
+  State state;
+  state.time = time;
+  watch.enter_step(state, 0.0);
+}
+
+TEST(MethodWatch, CountsStepsWithLargeCorrectionsOfVelocities) {
+  MethodWatch watch(std::nullopt, one_rank(), true);
+  const double limit = VelocityCorrections::noticeable;
+  enter_corrections(watch, 1.0, {0.5 * limit}, 2.0);
+  EXPECT_EQ(watch.velocity_corrections()->steps, 0);
+  EXPECT_EQ(watch.velocity_corrections()->largest, 0.25 * limit);
+  enter_corrections(watch, 2.0, {1.5 * limit, -1.5 * limit}, 2.0);  // parts do not cancel
+  enter_corrections(watch, 3.0, {-8.0 * limit}, 2.0);
+  enter_corrections(watch, 4.0, {1.0}, 1e-13);  // at rest
+  enter_corrections(watch, 5.0, {0.0}, 0.0);
+  const VelocityCorrections found = *watch.velocity_corrections();
+  EXPECT_EQ(found.steps, 2);
+  EXPECT_EQ(found.first_time, 2.0);
+  EXPECT_EQ(found.largest, 4.0 * limit);
+  EXPECT_EQ(found.time, 3.0);
+  EXPECT_FALSE(MethodWatch(std::nullopt).velocity_corrections().has_value()) << "the scheme makes none";
+
+  Snapshot snapshot;
+  watch.persist(snapshot.saver("method"));
+  MethodWatch resumed(std::nullopt, one_rank(), true);
+  resumed.persist(snapshot.loader("method"));
+  enter_corrections(resumed, 6.0, {-9.0 * limit}, 2.0);
+  EXPECT_EQ(resumed.velocity_corrections()->steps, 3);
+  EXPECT_EQ(resumed.velocity_corrections()->first_time, 2.0);
+  EXPECT_EQ(resumed.velocity_corrections()->time, 6.0);
+}
+
 TEST(MethodWatch, GoesOnFromASnapshot) {
   MethodWatch watch(ActingReaction::mixed_mean), resumed(ActingReaction::mixed_mean);
   enter(watch, -1.0, 0.25);

@@ -73,7 +73,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
       id: "works",
       title: "Energy account",
       note: "Work done on the body since the start. The residual is the error of the balance, at the size of rounding.",
-      columns: [...works, ...present(["re_pairing_work", "numerical_dissipation", "integration_error", "energy_residual"])],
+      columns: [...works, ...present(["re_pairing_work", "numerical_dissipation", "integration_error", "velocity_correction", "energy_residual"])],
       shown: runs.length > 1 ? ["contact_work"] : some(active(works), ["contact_work"]),
     },
     {

@@ -48,6 +48,7 @@ export interface Summary {
   energy_scale: Real; // largest total, kinetic or elastic energy
   energy_budget: EnergyBudget | null; // energy that the method lost or created, beside everything else; null before the first row of the history
   reactions: Reactions | null; // contact forces that acted; null for schemes without a choice
+  velocity_corrections: VelocityCorrections | null; // corrections of the velocities that close the balance of energy of steps at finite strain; null for laws and schemes without them
   unsettled_contacts: UnsettledContact[]; // contacts with large sliding where frozen steps have left gaps or overlaps
   contacts: Contact[]; // entries of `[[contact]]`, or the pairs of bodies that they stand for
   probes: Probe[]; // nodes of probes
@@ -119,6 +120,13 @@ export interface Reactions {
   largest_end_weight: Real | null; // largest weight
   steps_of_means: number; // number of these steps
   steps_without_mean: number; // number of steps with contact for which no mean was found
+}
+
+export interface VelocityCorrections {
+  steps: number; // number of steps in which they changed more than 10⁻⁴ of the energy
+  first_time: number | null; // time of the first such step; null if there is none
+  largest: Real; // largest change of the kinetic energy by them in a step, divided by kinetic and elastic energy at its end
+  time: number; // time of that step
 }
 
 export interface UnsettledContact {

@@ -19,6 +19,7 @@ class EndContactScheme : public Scheme {
                       .supports_relaxation = true,
                       .supports_free_bodies = supports_free_bodies,
                       .conserves_moments_at_finite_strain = true,
+                      .corrects_velocities = true,
                       .suits_singular_mass = true,
                       .jump_response = JumpResponse::undamped}),
         massless_step_(name, step) {}

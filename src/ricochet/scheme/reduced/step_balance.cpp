@@ -42,6 +42,7 @@ StepBalance::Verdict StepBalance::close(const SolvedStep& solved, Vector& residu
   defect += corrections_.numerical_dissipation;
   const double size = std::max(kinetic_start, kinetic_start + kinetic_change) + energy_start_ + energy_end_;
   if (size == 0.0) return Verdict::closed;  // everything is at rest
+  corrections_.energy_at_end = kinetic_start + kinetic_change + energy_end_;
   return correct_energy(defect / size, dissipation / size, size, may_open);
 }
 
@@ -155,6 +156,8 @@ StepBalance::Verdict StepBalance::correct_energy(double defect, double dissipati
   if (is_corrected) {
     velocity_change_ += velocity_correction_->value();
     end_velocity_ += velocity_correction_->value();
+    corrections_.velocity_correction = -defect * size;
+    corrections_.energy_at_end += corrections_.velocity_correction;
   }
   corrections_.integration_error = is_corrected ? 0.0 : defect * size;
   return Verdict::closed;

@@ -23,7 +23,8 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
 
 void EnergyAccount::persist(const SnapshotVisitor& visit) {
   visit.numbers("works", works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
-                works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing);
+                works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing,
+                works_.velocity_correction);
   visit("initial", initial_);
   visit("initial_algorithmic", initial_algorithmic_);
   if (problem_.contact.has_sliding_pairs()) visit("gap_before", gap_before_, problem_.contact.size());
@@ -109,6 +110,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   works_.numerical_dissipation += corrections.numerical_dissipation;
   works_.integration_error += corrections.integration_error;
   works_.viscous_dissipation += corrections.viscous_dissipation;
+  works_.velocity_correction += corrections.velocity_correction;
   previous_ = state.forces;
   std::swap(gap_before_, gap_now_);
   algorithmic_.reset();

@@ -23,6 +23,7 @@ struct Works {
   /// rows miss. Zero to rounding for rows of steps (sliding_contact.hpp), except where the facing facets change
   /// abruptly.
   double re_pairing = 0.0;
+  double velocity_correction = 0.0;  ///< kinetic energy added to close the balance of steps: no term of the account
 
   [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
 };

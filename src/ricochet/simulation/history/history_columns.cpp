@@ -114,6 +114,10 @@ const std::vector<ValuedQuantity<HistoryRow>>& history_quantities() {
         Reduction::same},
        [](Row row, Index) { return double(row.state->newton_iterations); },
        finite_strain},
+      work("velocity_correction", &Works::velocity_correction,
+           "kinetic energy that [corrections of the velocities](#what-the-method-did) have added to close the balance "
+           "of steps, less what they have removed; no term of the balance. 0 for schemes without corrections",
+           ColumnGroup::none, finite_strain),
       work("viscous_dissipation", &Works::viscous_dissipation,
            "energy that the viscoelastic branches have turned into heat", ColumnGroup::balance, branches),
       work("re_pairing_work", &Works::re_pairing,
