@@ -128,10 +128,10 @@ RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::pa
             law;
   }
   text += "[load]\ngravity = " + vector_text(d, pull) + "\n";
-  result.description = fmt::format("{}D degree {} {} on {} F {:.2f} stiffness {:.2g} crossings {:.3g}{}{}{}{}", d, degree,
-                                   upper_simplices ? "simplices" : "boxes", lower_simplices ? "simplices" : "boxes",
-                                   result.friction, ratio, result.crossings,
-                                   on_floor ? " on-floor" : "", finite ? " finite" : "",
-                                   tilt != 0.0 ? " tilted" : "", damped ? " damped" : "");
+  result.description =
+      fmt::format("{}D degree {} {} on {} F {:.2f} stiffness {:.2g} crossings {:.3g}{}{}{}{}", d, degree,
+                  upper_simplices ? "simplices" : "boxes", lower_simplices ? "simplices" : "boxes", result.friction,
+                  ratio, result.crossings, on_floor ? " on-floor" : "", finite ? " finite" : "",
+                  tilt != 0.0 ? " tilted" : "", damped ? " damped" : "");
   return result;
 }

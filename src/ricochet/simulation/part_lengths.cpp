@@ -8,6 +8,10 @@ namespace ricochet {
 void PartLengths::record_solution() {
   const long length = whole >> level_;
   done_ = (done_ + length) % whole;
+  if (!memory_) {
+    while (level_ > (done_ > 0 ? 1 : 0) && done_ % (whole >> (level_ - 1)) == 0) --level_;
+    return;
+  }
   for (Attempts& each : attempts_) each.wait = std::max(each.wait - length, 0L);
   if (!is_shortest()) attempts_[std::size_t(level_)].pause = 1;
   if (level_ == 0) return;

@@ -12,13 +12,18 @@ namespace ricochet {
 /// last one ended. After each part, one of twice the length follows if it fits into the step and if, since such a part
 /// has failed, at least its own length was solved. This pause doubles with every further failure, up to `longest_pause`
 /// lengths, until one succeeds: where only shorter parts have solutions, one attempt in 2 longest_pause + 1 fails, and
-/// after a step that fails once whole ones follow.
+/// after a step that fails once whole ones follow. (A step whose first part has no solution down to the shortest length
+/// is attempted whole: Simulation.)
+///
+/// Without `memory` every step begins whole, and after each part the longest one that fits into the step follows. This
+/// is for linear forces, where steps without a solution are accidents of contact and no difficulties that last.
 class PartLengths {
  public:
   static constexpr int deepest = 8;             ///< level of the shortest parts
   static constexpr long whole = 1L << deepest;  ///< length of a step in shortest parts
   static constexpr int longest_pause = 8;
 
+  explicit PartLengths(bool memory = true) : memory_(memory) {}
   /// Level of the next part.
   [[nodiscard]] int level() const { return level_; }
   [[nodiscard]] bool is_shortest() const { return level_ == deepest; }
@@ -32,6 +37,7 @@ class PartLengths {
   void persist(const SnapshotVisitor& visit);
 
  private:
+  bool memory_;
   int level_ = 0;
   long done_ = 0;
   /// Attempts at parts of a level, except the deepest.

@@ -30,7 +30,8 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
       contact_points_(problem.global_contact_point_count()),
       scheme_(scheme),
       options_(options),
-      whole_step_(scheme.step()) {
+      whole_step_(scheme.step()),
+      part_lengths_(!problem.internal_force->is_linear()) {
   if (!control) return;
   require_changing_steps(scheme_, nameless);
   control_.emplace(problem_, *control);

@@ -84,6 +84,7 @@ class Simulation : private StageSolve {
   [[nodiscard]] const char* failure_reason() const;
   void warn_of_short_parts();
   bool take_fixed_step(const std::function<void(const State&)>& each_part);
+  bool forget_parts(const std::function<void(const State&)>& each_part);
   bool take_whole_step();
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;

@@ -39,11 +39,24 @@ bool Simulation::take_fixed_step(const std::function<void(const State&)>& each_p
   try {
     if (part_lengths_.level() == 0 && take_whole_step()) return true;
     take_step_in_parts(each_part);
+  } catch (const Error& problem) {
+    const bool has_parts = part_lengths_.done() > 0;
+    part_lengths_ = before;
+    if (problem.kind() != ErrorKind::not_converged || before.level() == 0 || has_parts) throw;
+    return forget_parts(each_part);
+  }
+  return false;
+}
+
+/// Attempts a step from the whole length on, after parts of the remembered length had no solution at its start.
+bool Simulation::forget_parts(const std::function<void(const State&)>& each_part) {
+  const PartLengths before = std::exchange(part_lengths_, PartLengths());
+  try {
+    return take_fixed_step(each_part);
   } catch (const Error&) {
     part_lengths_ = before;
     throw;
   }
-  return false;
 }
 
 /// Returns false if the step has no solution and can be divided.

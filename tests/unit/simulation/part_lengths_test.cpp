@@ -33,6 +33,18 @@ Attempts take_step(PartLengths& lengths, int longest) {
   return attempts;
 }
 
+/// Each step begins whole, and tries a longer part as soon as it fits.
+TEST(PartLengths, StartAnewWithoutMemory) {
+  PartLengths lengths(false);
+  for (int step = 0; step < 3; ++step) {
+    const Attempts attempts = take_step(lengths, 3);
+    EXPECT_EQ(attempts.solved, 8);
+    // At the start 1, 1/2 and 1/4 fail, then 1/4, after half of the step 1/2 and 1/4, and 1/4 at last.
+    EXPECT_EQ(attempts.failed, 3 + 1 + 2 + 1);
+    EXPECT_EQ(lengths.level(), 0);
+  }
+}
+
 TEST(PartLengths, AreWholeStepsUntilOneFails) {
   PartLengths lengths;
   for (int step = 0; step < 5; ++step) EXPECT_EQ(take_step(lengths, 0).solved, 1);
