@@ -3,7 +3,7 @@ the case."""
 
 import math
 
-from harness import MESHES, block_case, body_case, gravity
+from harness import MESHES, SOURCE, block_case, body_case, gravity, with_more
 from two_bodies_test import strip
 from two_bodies_traps_test import wedge
 
@@ -11,6 +11,7 @@ BLOCK = (block_case().replace("[[material]]", "refine = 2\n[[material]]", 1)
          .replace('scheme = "newmark"\npreset = "trapezoidal"', 'scheme = "midpoint"'))
 PLANE = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
 BALL = BLOCK.replace(PLANE, 'type = "sphere"\ncentre = [0.5, -2.0]\nradius = 2.0')
+BALLOON = with_more(SOURCE / "cases" / "balloon" / "balloon.toml", "")
 PRESSED = BLOCK + '[[pressure]]\ngroup = "sides"\nvalue = "1"\n'
 JERKED = BLOCK + '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "-0.01*min(t/0.1, 1)"\n'
 HELD = BLOCK + '[[support]]\ngroup = "sides"\ncomponents = ["y"]\n'

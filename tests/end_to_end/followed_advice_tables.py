@@ -1,7 +1,7 @@
 """Messages that advise a setting, the case that causes each, and the setting that is applied. The test is
 followed_advice_test.py."""
 
-from followed_advice_cases import (ADAPTIVE, ALL_ROUND, ARC, BALL, BLOCK, BRICKS, CELL, CURVED, EXPLICIT, FEWER, GROUND, GROWS, HELD,
+from followed_advice_cases import (ADAPTIVE, ALL_ROUND, ARC, BALL, BALLOON, BLOCK, BRICKS, CELL, CURVED, EXPLICIT, FEWER, GROUND, GROWS, HELD,
                                    HELD_X, HORN, JERKED, KANE, LANDS, LONG, LUMPED, MEETS, NARROW, NEO, NEWMARK, ON_FACETS, PAIR, PIN,
                                    POLYGONS, PRESSED, PRESSED_PAIR, RELAXES, RIDGE, ROD, ROWS, SECOND_ORDER, SHAKEN, SHOE, SIDEWAYS,
                                    SLIDES, SLIM, SOLID, STRIKES, STRUCK, TIED, WITH_INERTIA)
@@ -231,7 +231,12 @@ TRIED_BY_RUNS = [
     (r'rebounds lack this much energy; a smaller time.step and smaller cells lose less', STRUCK,
      {**KANE, "time.reaction_weight": "end", "time.step": 0.05, "time.end": 1.0, "contact.0.friction": 0.1},
      [{"time.step": 0.002, "mesh.refine": 1}, {"time.reaction_weight": '"adaptive"'}]),
-    (r'vibrations carry an error of this size; a smaller time.step makes it smaller, a smaller solver.newton_tolerance does not', BLOCK,
+    (r'strains change too much in a step: use a smaller time.step', BLOCK,
      {**KANE, "material.0.law": "neo-hookean", "initial.displacement": '["0.2*x", "0.2*y"]', "time.step": 0.05,
       "time.end": 0.2}, [{"time.step": 0.005}]),
+    (r'set solver.newton_tolerance = 1e-6 or less, and if that does not suffice, use a smaller time.step', BALLOON,
+     {"solver.newton_tolerance": 1e-4}, [{"solver.newton_tolerance": 1e-6}]),
+    (r'set solver.newton_tolerance = 1e-6 or less, and if that does not suffice, use a smaller time.step', BLOCK,
+     {**KANE, "material.0.law": "neo-hookean", "initial.displacement": '["0.2*x", "0.2*y"]', "time.step": 0.05,
+      "time.end": 0.2, "solver.newton_tolerance": 1e-4}, [{"time.step": 0.005}]),
 ]

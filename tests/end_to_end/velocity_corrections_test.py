@@ -46,12 +46,14 @@ class VelocityCorrections(TestCase):
         self.assertIn(f"LARGE CORRECTIONS OF VELOCITIES in {len(large)} of {len(shares)} steps", shown)
         self.assertLess(max(map(abs, history["energy_residual"])), 1e-13 * history.largest_energy(), "corrections are in no balance")
 
-    def test_only_shorter_steps_reduce_them(self):
+    def test_shorter_steps_reduce_them_and_a_loose_tolerance_is_named_first(self):
         for step in (0.02, 0.005):
             for tolerance in (1e-4, 1e-12):
                 _, summary = self.outcome("out", {"time.step": step, "solver.newton_tolerance": tolerance})
                 found = summary["velocity_corrections"]
-                self.assertEqual(len(self.warnings(summary)), 1 if step == 0.02 else 0)
+                told = self.warnings(summary)
+                self.assertEqual(len(told), 1 if step == 0.02 else 0)
+                self.assertEqual(["set solver.newton_tolerance" in text for text in told], [tolerance > 1e-6] * len(told))
                 self.assertEqual(found["steps"] > 0, step == 0.02)
                 self.assertEqual(found["first_time"] is None, step == 0.005)
                 self.assertEqual(found["largest"] > LARGE, step == 0.02)

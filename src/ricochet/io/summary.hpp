@@ -116,7 +116,7 @@ struct ActingReactions {
 /// Corrections of the velocities that close the balance of energy of steps at finite strain. Shares are kinetic
 /// energies that they add or remove in a step, relative to kinetic and elastic energy at its end.
 struct VelocityCorrections {
-  /// Share above which they are reported: a hundred times what any admissible tolerance of Newton's method leaves.
+  /// Share above which they are reported: twice the largest one of the cases of the collection.
   static constexpr double noticeable = 1e-4;
   long steps = 0;                                               ///< with a share above it
   double first_time = std::numeric_limits<double>::infinity();  ///< of the first one; infinite if there is none

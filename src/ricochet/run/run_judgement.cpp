@@ -16,6 +16,9 @@ namespace ricochet {
 /// Rotation, in rad, above which the run reports at its end how large the error has become; the error grows with the
 /// square.
 constexpr double large_rotation = 2.0 * rotation_limit;
+/// Tolerance of Newton's method above which it may cause large corrections of velocities by itself (measured,
+/// docs/finite-strain-proofs.md).
+constexpr double loose_tolerance = 1e-6;
 /// Equivalent strain above which small strain does not hold.
 constexpr double strain_limit = 0.1;
 
@@ -112,17 +115,21 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   }
 }
 
-void judge_velocity_corrections(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+void judge_velocity_corrections(const RunSummary& summary, double newton_tolerance, const SemidiscreteProblem& problem,
+                                const State& state) {
   if (!summary.velocity_corrections || summary.velocity_corrections->steps == 0) return;
   if (is_rounding_of_energy(summary.energy_scale(), problem, state)) return;
   const VelocityCorrections& found = *summary.velocity_corrections;
   log::warning(fmt::format(
       "in {} of {}, from t = {:.6g} on, corrections of velocities, which close the balance of energy, changed more "
-      "than {:g} % of kinetic and elastic energy, up to {:.2g} % at t = {:.6g} (velocity_correction of the history): "
-      "strains change too much in a step, and vibrations carry an error of this size; a smaller time.step makes it "
-      "smaller, a smaller solver.newton_tolerance does not",
+      "than {:g} % of kinetic and elastic energy, up to {:.2g} % at t = {:.6g} (velocity_correction of the history), "
+      "and "
+      "vibrations carry an error of this size; {}",
       found.steps, counted(summary.steps, "step"), found.first_time, 100.0 * VelocityCorrections::noticeable,
-      100.0 * found.largest, found.time));
+      100.0 * found.largest, found.time,
+      newton_tolerance > loose_tolerance
+          ? "set solver.newton_tolerance = 1e-6 or less, and if that does not suffice, use a smaller time.step"
+          : "strains change too much in a step: use a smaller time.step"));
 }
 
 void judge_unsettled(const RunSummary& summary) {

@@ -12,8 +12,10 @@ namespace ricochet {
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state);
 
-/// Warns of steps in which the balance of energy has moved velocities by more than any tolerance leaves.
-void judge_velocity_corrections(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state);
+/// Warns of steps in which the balance of energy has moved velocities noticeably, with this tolerance of Newton's
+/// method.
+void judge_velocity_corrections(const RunSummary& summary, double newton_tolerance, const SemidiscreteProblem& problem,
+                                const State& state);
 
 /// Warns of contacts between bodies whose force is doubtful after steps that were held.
 void judge_unsettled(const RunSummary& summary);

@@ -282,7 +282,8 @@ void Run::write_end() {
   const bool fails_to_converge = failure_ && failure_->kind() == ErrorKind::not_converged;
   if (summary_.status == "done" || fails_to_converge) {
     judge_energy(summary_, session_.scheme(), session_.model().problem, session_.simulation().state());
-    judge_velocity_corrections(summary_, session_.model().problem, session_.simulation().state());
+    judge_velocity_corrections(summary_, input_.solver.newton_tolerance, session_.model().problem,
+                               session_.simulation().state());
     judge_unsettled(summary_);
     judge_sliding(summary_, session_.model().problem, session_.model().body);
     judge_strain(summary_, session_.model().body);
