@@ -115,6 +115,23 @@ class NewtonTolerance(TestCase):
         disc = 'type = "sphere"\ncentre = [0.4, 0.75]\nradius = 0.3\ndensity = 2.0\nvelocity = [0.3, -1.5]\nspin = 5.0'
         self.runs('[mesh]\nfile = "box.geo"\n' + material() + floor(0.3, disc).replace('"base"', '"top"') + time())
 
+    def test_a_body_of_any_size(self):
+        """In units of length of any power of two the results have the same digits: of a body of some 10^-8 or 10^7 too."""
+        histories = []
+        for exponent in (0, -24, 24):
+            length = 2.0**exponent
+            text = ('[mesh]\nfile = "box.geo"\n' + f"scale = {length!r}\n" +
+                    f'[[material]]\ngroup = "body"\ndensity = {length**-2!r}\nyoung = 100.0\npoisson = 0.3\nlaw = "neo-hookean"\n' +
+                    floor(shape=f'type = "plane"\npoint = [0, {-0.0625 * length!r}]\nnormal = [0, 1]') +
+                    f'[initial]\nvelocity = ["{length!r}-2*(y-{0.1875 * length!r})", "-{length!r}+2*(x-{0.5 * length!r})"]\n' +
+                    time(end=0.2) + "[solver]\nnewton_tolerance = 1e-4\n")
+            histories.append((length, History(self.simulate(self.write("case.toml", text), f"size{exponent}") / "history.csv")))
+        _, usual = histories[0]
+        self.assertGreater(max(usual["active_contacts"]), 0)
+        for length, history in histories[1:]:
+            for name, power in (("momentum_x", 1), ("angular_momentum_z", 2), ("kinetic_energy", 2), ("total_energy", 2)):
+                self.assertEqual([value / length**power for value in history[name]], list(usual[name]), (length, name))
+
     def test_a_value_that_is_none_is_refused(self):
         case = self.write("case.toml", '[mesh]\nfile = "box.geo"\n' + material() + floor() + THROW + time())
         for value in (0, -1e-9, 0.1):

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ricochet {
@@ -34,6 +35,22 @@ VelocityCorrection::VelocityCorrection(const SemidiscreteProblem& problem, const
   });
   mask(sum);
   problem.mass.multiply(sum, inertia_);
+  find_scales();
+}
+
+/// Computes scales from the extents of the bodies: powers of two, so that units of length do not change results.
+void VelocityCorrection::find_scales() {
+  scales_.setOnes(Index(bodies_.count()));
+  Points least = Points::Constant(problem_.dimension, scales_.size(), std::numeric_limits<double>::infinity());
+  Points largest = -least;
+  for_each_node([&](Index node, std::size_t body) {
+    least.col(Index(body)) = least.col(Index(body)).cwiseMin(problem_.nodes.col(node));
+    largest.col(Index(body)) = largest.col(Index(body)).cwiseMax(problem_.nodes.col(node));
+  });
+  for (Index body = 0; body < scales_.size(); ++body) {
+    const double extent = (largest.col(body) - least.col(body)).maxCoeff();
+    if (extent > 0.0) scales_[body] = std::ldexp(1.0, 1 - std::ilogb(extent));
+  }
 }
 
 void VelocityCorrection::start(const Vector& end) {
@@ -85,7 +102,7 @@ void VelocityCorrection::for_each_node(const Work& work) const {
   }
 }
 
-/// Makes positions relative to the centres.
+/// Makes positions relative to the centres, and of the order of 1.
 template <int d>
 void VelocityCorrection::leave_centres() {
   centres_.setZero(d, Index(bodies_.count()));
@@ -96,7 +113,8 @@ void VelocityCorrection::leave_centres() {
   });
   for (Index body = 0; body < sizes_.size(); ++body) centres_.col(body) /= sizes_[body];
   for_each_node([&](Index node, std::size_t body) {
-    positions_.segment<d>(node * d) -= centres_.col(Index(body)).template head<d>();
+    auto position = positions_.segment<d>(node * d);
+    position = scales_[Index(body)] * (position - centres_.col(Index(body)).template head<d>());
   });
 }
 
@@ -115,12 +133,12 @@ VelocityCorrection::Resultant<d> VelocityCorrection::resultant(const Position<d>
   return result;
 }
 
-/// Position at a displacement, relative to the centre of the body at the end.
+/// Scaled position at a displacement, relative to the centre of the body at the end.
 template <int d>
 VelocityCorrection::Position<d> VelocityCorrection::position(const Vector& displacement, Index node,
                                                              std::size_t body) const {
-  return problem_.nodes.col(node).template head<d>() + displacement.segment<d>(node * d) -
-         centres_.col(Index(body)).template head<d>();
+  return scales_[Index(body)] * (problem_.nodes.col(node).template head<d>() + displacement.segment<d>(node * d) -
+                                 centres_.col(Index(body)).template head<d>());
 }
 
 void VelocityCorrection::shift(const Vector& values, Index by, Vector& shifted) const {

@@ -55,6 +55,7 @@ class VelocityCorrection {
 
   template <class Work>
   void for_each_node(const Work& work) const;
+  void find_scales();
   template <int d>
   void leave_centres();
   template <int d>
@@ -84,7 +85,8 @@ class VelocityCorrection {
   bool has_systems_ = false;      ///< whether those of the present end are known
   Points centres_;                ///< of the bodies at the end: means of their nodes
   Vector sizes_;                  ///< numbers of nodes
-  Vector positions_;              ///< at the end, relative to the centre of the node's body
+  Vector scales_;                 ///< factors that make positions of the order of 1, per body
+  Vector positions_;              ///< at the end, relative to the centre of the node's body, times the scale
   Vector inertia_;                ///< M P times the sum of the translations
   std::vector<Vector> weighted_;  ///< M P times positions, their components shifted by 1 and, in 3D, by 2
   Vector product_;
