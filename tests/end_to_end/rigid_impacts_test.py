@@ -47,8 +47,8 @@ Physical Curve("left") = {4};
 
 
 class Impacts(TestCase):
-    def history(self, text):
-        return History(self.simulate(self.write("case.toml", text)) / "history.csv")
+    def history(self, text, name="out"):
+        return History(self.simulate(self.write("case.toml", text), name) / "history.csv")
 
     def closes(self, history, part=1e-11):
         self.assertGreater(max(history["active_contacts"]), 0)
@@ -123,11 +123,13 @@ class Bounces(Impacts):
         self.assertLess(numpy.ptp(history["total_energy"]), 1e-10 * max(history["kinetic_energy"]))
 
     def test_the_default_never_gives_any(self):
-        history = self.history(self.case("reduced-kane", "equivalent", "neo-hookean") + "[solver]\nnewton_tolerance = 1e-13\n")
-        self.closes(history)
-        self.assertGreater(self.bounces(history), 10)
-        self.assertLess(max(numpy.diff(history["total_energy"])), 1e-12 * max(history["kinetic_energy"]))
-        self.assertLess(max(history["max_penetration"]), 1e-13)
+        """On curved surfaces nodes penetrate by the last correction: to rounding with the least tolerance."""
+        for tolerance, deepest in (("", 1e-11), ("[solver]\nnewton_tolerance = 1e-13\n", 1e-13)):
+            history = self.history(self.case("reduced-kane", "equivalent", "neo-hookean") + tolerance, f"to{deepest:g}")
+            self.closes(history)
+            self.assertGreater(self.bounces(history), 10)
+            self.assertLess(max(numpy.diff(history["total_energy"])), 1e-12 * max(history["kinetic_energy"]))
+            self.assertLess(max(history["max_penetration"]), deepest)
 
 
 class PegInHole(Impacts):
