@@ -53,7 +53,7 @@ class ElasticCells {
   [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
   /// Computes the forces at a displacement `middle` of the mean stress S̄ along the path of the strain from that of
   /// `middle` − ½ `increment` to that of `middle` + ½ `increment` (strain_path.hpp): their work on the increment is the
-  /// change of the energy, and a rigid motion has none.
+  /// change of the energy up to the error of the rule, and a rigid motion has none.
   [[nodiscard]] InvertedCell path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
                                         Vector& result) const;
   /// Returns a ∂D/∂x + b ∂D/∂Δ̂ of the force D(x, Δ̂) of path_force(), with x = `middle`, Δ̂ = `increment`, and a and b

@@ -61,8 +61,8 @@ class RelaxationRule {
     const Strain change = end - start - x_ * acting;
     return excess_ * double_dot(change, change) + 2.0 * x_ * double_dot(acting, acting);
   }
-  /// Returns 2(1−θ)|q|² + 2(2θ−1) q₁:E of a strain E, with A at the start of the step. Half of its derivative is at E₀
-  /// + J 2q̄ − q₁: the stress at the start of the path with the mean q̄ and the end value q₁.
+  /// Returns 2(1−θ)|q|² + 2(2θ−1) q₁:E of a strain E, with A at the start of the step. At E₀ + J half of its derivative
+  /// is 2q̄ − q₁, the stress at the start of the path with the mean q̄ and the end value q₁.
   template <class Strain>
   [[nodiscard]] RICOCHET_PART_OF_CALLER auto start_energy(const Strain& strain, const Strain& internal,
                                                           const Strain& elastic_end) const {

@@ -10,7 +10,7 @@
 /// @file Fixed points x = F(x) of maps of many unknowns that contract slowly or not at all.
 namespace ricochet {
 
-/// Anderson acceleration (anderson_acceleration.hpp) for long vectors.
+/// Anderson acceleration (anderson_acceleration.hpp) for long vectors on one rank.
 ///
 /// ΔF = QR has the changes of the residual as columns, oldest first, each divided by its length since they shrink by
 /// orders of magnitude, and ΔG those of the image, divided by the same; the next point is F(x) − ΔG γ with Rγ = Qᵀf. A

@@ -27,8 +27,9 @@ class InternalForce {
   /// Strain energy if the force that evaluate() returns at this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
   /// Computes the forces, at a displacement `middle`, of the mean stress along the path of the strain from
-  /// `middle` − ½ `increment` to `middle` + ½ `increment` (fem/strain_path.hpp). Their work on the increment is the
-  /// change of the energy, and a rigid motion has none. Only for nonlinear forces; throws as evaluate() does.
+  /// `middle` − ½ `increment` to `middle` + ½ `increment` (fem/strain_path.hpp). Their work on the increment, u₁ − u⁺
+  /// of a step, is the change of the energy up to the error of the rule, and a rigid motion has none. Only for
+  /// nonlinear forces; throws as evaluate() does.
   virtual void path_force(const Vector& middle, const Vector& increment, const PathRules& rules, Vector& force) const;
   /// Returns a ∂D/∂x + b ∂D/∂Δ̂ of the force D that path_force() computes, with a and b of the `variation`: in general
   /// not symmetric, with the pattern of tangent(). For solvers with the exact tangent; only for nonlinear forces.

@@ -123,8 +123,7 @@ void judge_velocity_corrections(const RunSummary& summary, double newton_toleran
   log::warning(fmt::format(
       "in {} of {}, from t = {:.6g} on, corrections of velocities, which close the balance of energy, changed more "
       "than {:g} % of kinetic and elastic energy, up to {:.2g} % at t = {:.6g} (velocity_correction of the history), "
-      "and "
-      "vibrations carry an error of this size; {}",
+      "and vibrations carry an error of this size; {}",
       found.steps, counted(summary.steps, "step"), found.first_time, 100.0 * VelocityCorrections::noticeable,
       100.0 * found.largest, found.time,
       newton_tolerance > loose_tolerance
