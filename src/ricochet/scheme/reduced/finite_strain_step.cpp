@@ -111,8 +111,6 @@ void FiniteStrainStep::require_balance(const SemidiscreteProblem& problem, doubl
     lagged_row_force_.setZero();
     lagged_.add_difference(reactions_.normal, reactions_.tangential, lagged_row_force_);
     stage.right_hand_side.force += lagged_row_force_;
-    problem.contact.geometry->add_couples(middle_, *lagged_.exact(), reactions_.acting_normal,
-                                          reactions_.acting_tangential, stage.right_hand_side.force);
   }
   const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
   equations_.prescribe(problem, state.time + step, half_way, stage);

@@ -32,10 +32,11 @@
 /// massless_contact_step.hpp. Else d' differs by terms of the third order in J and ΔE.
 ///
 /// Iterations end when the increment is accurate enough (StageSolve::newton_tolerance). Velocities at the end then
-/// compensate for the residual R of the forces and for all other errors of the balance (step_balance.hpp): momenta
+/// compensate for the residual R of the forces, for the moments about x of contact forces between bodies, whose rows
+/// belong to the mean of both ends, and for all other errors of the balance (step_balance.hpp): momenta
 /// change by impulses, and energy by the terms above, to rounding, with any tolerance. Contact conditions hold to
-/// rounding in every iteration. d' counts as numerical dissipation as far as the step really loses it: couples of
-/// contact forces, which cancel their moments, may do work as well, and d' < 0 counts as zero.
+/// rounding in every iteration. d' counts as numerical dissipation as far as the step really loses it, and d' < 0
+/// counts as zero.
 ///
 /// A pressure P(u, t) that follows the surface is added as P(x), with the mean of the pressures at both ends, to L̄ in
 /// the equations at x, so that over a closed surface it has neither resultant nor moment about x; as P(u₁) to L₁; and

@@ -36,7 +36,7 @@ StepBalance::Verdict StepBalance::close(const SolvedStep& solved, Vector& residu
   const double kinetic_start = 0.5 * solved.problem.mass.quadratic_form(solved.state.velocity);
   const double kinetic_change = correct_momenta(solved, residual);
   double defect = energy_defect(solved, kinetic_change);
-  // Couples of contact forces, which cancel moments, may do work: the energy that is lost may be less than d'.
+  // Velocities with exact momenta may have more energy, so that less than d' is lost.
   if (end_weight_ > 0.0 && dissipation > 0.0)
     corrections_.numerical_dissipation = std::clamp(-defect, 0.0, dissipation);
   defect += corrections_.numerical_dissipation;
