@@ -286,35 +286,18 @@ class Refusals(Sliding):
         tied = self.case(against='"slab.top"') + '[[contact]]\ngroup = "slab.top"\nagainst = "other.top"\ntied = true\n'
         self.assertNotEqual(run("run", self.write("tied.toml", tied), "-o", self.folder / "tied", "--quiet").returncode, 0)
 
-    def test_the_force_that_frozen_steps_put_in_doubt(self):
-        """A shaft pressed into a hub: frozen steps leave an overlap, the force is wrong, and the run states a bound of
-        the error. It slides all the time: the axial force is friction times the radial one, whatever its value."""
+    def test_a_rim_leaves_no_overlap_at_any_step(self):
+        """A shaft pressed into a hub: nodes pass the hub's rim one after the other, and friction moves the rim."""
         (self.folder / "hub.geo").write_text(HUB_GEO)
         (self.folder / "shaft.geo").write_text(SHAFT_GEO)
         case = self.write("fit.toml", PRESS_FIT)
-
-        def force_and_summary(step):
+        forces = []
+        for step in (8e-5, 4e-5, 1e-5, 8e-6, 7e-6, 6e-6):
             folder = self.simulate(case, values={"time.step": step}, options=("--quiet", "--force"))
-            return History(folder / "history.csv")["fit.force_y"][-1], summary_of(folder)
-
-        right, found = force_and_summary(4e-5)
-        self.assertEqual(found["unsettled_contacts"], [])
-        self.assertFalse([text for text in found["warnings"] if "held" in text or "rebounds" in text], found["warnings"])
-        wrong = 0
-        for step in (1e-5, 8e-6, 7e-6, 6e-6):  # rounding decides which of them fail
-            force, found = force_and_summary(step)
-            contacts = found["unsettled_contacts"]
-            share = contacts[0]["share_of_force"] if contacts else 0.0
-            self.assertLessEqual(abs(force - right), (share + 0.01) * right)
-            if abs(force - right) < 0.05 * right:
-                continue
-            wrong += 1
-            self.assertGreater(contacts[0]["steps"], 0)
-            self.assertLess(contacts[0]["gap"], 0.0)
-            told = [text for text in found["warnings"] if "is in doubt" in text]
-            self.assertEqual(len(told), 1, found["warnings"])
-            self.assertIn('the contact of "shaft.outside" and "hub.inside"', told[0])
-            self.assertFalse([text for text in found["warnings"] if "smaller" in text or "rebounds" in text], found["warnings"])
-            self.assertIn("FORCE IN DOUBT", self.expect_status(0, run("info", self.folder / "out")).stdout)
-            break
-        self.assertGreater(wrong, 0, "no step leaves an overlap any more: this test needs another case")
+            history, found = History(folder / "history.csv"), summary_of(folder)
+            forces.append(history["fit.force_y"][-1])
+            self.assertEqual(found["unsettled_contacts"], [])
+            self.assertLess(max(history["unsettled_gap"]), 1e-9)
+            self.assertLess(max(history["contact_work"]), 1e-10 * history.largest_energy())
+            self.assertFalse([text for text in found["warnings"] if "frozen" in text], found["warnings"])
+        self.assertLess(numpy.ptp(forces), 0.01 * min(forces))

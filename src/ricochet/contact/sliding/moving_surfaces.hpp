@@ -24,6 +24,8 @@ class MovingSurfaces {
   void enable_self_contact();
 
   [[nodiscard]] const FacetMap& map() const { return map_; }
+  /// Map of the facets at rest.
+  [[nodiscard]] const FacetMap& reference_map() const { return reference_; }
   [[nodiscard]] const FacetSurface& own() const { return own_; }
   [[nodiscard]] const FacetSurface& opposite() const { return opposite_; }
   [[nodiscard]] const SegmentFinder& finder() const { return finder_; }

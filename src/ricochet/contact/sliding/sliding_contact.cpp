@@ -255,7 +255,7 @@ class SlidingContact final : public ContactGeometry {
     if (std::isfinite(way)) {
       const double reach = reach_of_sliding(way, pair.height());
       for (std::size_t i = 0; i < out_of_reach.size(); ++i)
-        out_of_reach[i] = views.at_start[i].faces && views.at_start[i].gap > reach ? 1 : 0;
+        out_of_reach[i] = views.at_start[i].faces && views.at_start[i].distance > reach ? 1 : 0;
     }
     if (out_of_reach == views.out_of_reach) return;
     views.out_of_reach = out_of_reach;
@@ -314,11 +314,14 @@ class SlidingContact final : public ContactGeometry {
         writer_.write(pair.points()[i], views.middle[i], rows);
       } else if (views.enters(i)) {
         SlidingView& view = views.entering[i];
-        writer_.correct(view, {}, gap_rounding);
+        writer_.correct(view, -std::numeric_limits<double>::infinity(), 0.0, gap_rounding);
         writer_.write(pair.points()[i], view, rows);
       } else {
         SlidingView& view = views.middle[i];
-        writer_.correct(view, views.gaps[i].gap - views.at_start[i].gap, gap_rounding);
+        const double change = views.gaps[i].gap - views.at_start[i].gap;
+        // A point that comes over a rim has closed its gap there by sliding, mostly before it carried a force.
+        const bool was_on_rim = views.at_start[i].gap > views.at_start[i].distance;
+        writer_.correct(view, change, was_on_rim ? std::max(change, 0.0) : change, gap_rounding);
         writer_.write(pair.points()[i], view, rows);
       }
     }

@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/rounded.hpp"
 #include "ricochet/contact/mortar/pair_integration.hpp"
 #include "ricochet/contact/sliding/moving_surfaces.hpp"
+#include "ricochet/contact/sliding/rim_distance.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Fraction of a multiplier's whole area below which a point faces nothing.
-constexpr double least_sliding_cover = 1e-3;
+/// Cover below which a point faces nothing.
+constexpr double least_cover = 1e-9;
 
 /// Entry of a node, created if there is none.
 template <class Value>
@@ -54,9 +56,10 @@ Sight sight_of(const PolynomialMap<3>::Evaluation& at, bool plane, const Sliding
 struct SlidingPair::Implementation {
   /// Sums of one point.
   struct Sums {
-    double weight = 0.0, gap = 0.0;
-    SlidingVector force = SlidingVector::Zero();  ///< ∫ψ ν/(n·ν)
-    SlidingVector pull = SlidingVector::Zero();   ///< ∫ψ h ν/(n·ν) over the current own facet
+    double weight = 0.0, cover = 0.0, gap = 0.0;
+    SlidingVector force = SlidingVector::Zero();     ///< ∫ψ ν/(n·ν)
+    SlidingVector pull = SlidingVector::Zero();      ///< ∫ψ h ν/(n·ν) over the current own facet
+    SlidingVector rim_pull = SlidingVector::Zero();  ///< ∫ψ h k over it, k of rim_direction()
   };
 
   Data data;
@@ -65,10 +68,12 @@ struct SlidingPair::Implementation {
   bool plane;
   bool is_self;
   mutable MovingSurfaces surfaces;
+  RimDistance rim;  ///< of the opposite surface
   double least_height = std::numeric_limits<double>::infinity();
   double detection_depth = least_height;  ///< see SlidingPair::detection_depth()
   /// Per own facet, in the order of the space's anchors there: number of the point, or −1.
   std::vector<std::vector<int>> points_of;
+  std::vector<double> sizes;            ///< per point: the largest facet of its support, L
   std::vector<RotatingNormal> normals;  ///< per own facet, into its body
   // State of the current evaluation.
   mutable Vector evaluated_displacement;
@@ -86,7 +91,8 @@ struct SlidingPair::Implementation {
         space(make_multiplier_space(data.multipliers, patch)),
         plane(data.body.space->dimension == 2),
         is_self(data.is_self()),
-        surfaces(data.body, data.facets, data.opposite_facets) {
+        surfaces(data.body, data.facets, data.opposite_facets),
+        rim(*data.body.space, data.opposite_facets) {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
       for (const FacetSurface::Facet& facet : surface->facets())
         least_height = std::min(least_height, facet.cell_height);
@@ -109,6 +115,7 @@ struct SlidingPair::Implementation {
       const Multiplier& multiplier = data.points[i].multiplier;
       by_anchor[multiplier.node >= 0 ? multiplier.node : multiplier.facet] = int(i);
     }
+    sizes.assign(data.points.size(), 0.0);
     const FacetIntegration whole(data.body);
     FacetQuadrature quadrature;
     for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
@@ -118,6 +125,7 @@ struct SlidingPair::Implementation {
       for (const Index anchor : functions.anchors) {
         const auto found = by_anchor.find(anchor);
         here.push_back(found != by_anchor.end() ? found->second : -1);
+        if (here.back() >= 0) sizes[std::size_t(here.back())] = std::max(sizes[std::size_t(here.back())], facet.size);
       }
     }
   }
@@ -127,6 +135,9 @@ struct SlidingPair::Implementation {
   void integrate(int facet, const FacetSegments& segments, const SlidingVector& n, Content content,
                  std::vector<SlidingView>& views) const;
   void add_normal_derivative(int facet, const SlidingVector& n, std::vector<SlidingView>& views) const;
+  void add_traces(const Index* opposite_nodes, Index own, Index opposite, double weight, SlidingView& view) const;
+  void add_row(const Index* opposite_nodes, Index own, Index opposite, const SlidingVector& force,
+               SlidingView::Vectors& row) const;
   void finish(std::size_t point, Content content, SlidingView& view) const;
 };
 
@@ -163,13 +174,20 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
   Index begin = 0;
   for (const SurfaceSegment& segment : segments.segments) {
     const PolynomialMap<3> map = surfaces.map().map_of(segment.opposite);
+    std::optional<PolynomialMap<3>> reference;
+    if (rim.is_near(segment.opposite)) reference.emplace(surfaces.reference_map().map_of(segment.opposite));
     surfaces.map().displacement(segment.opposite, segment.opposite_local, shapes);
     const IndexInBlocks location = locate_facet(*data.body.space, segment.opposite);
     const Index* const nodes = data.body.space->facets[location.block].cell(location.local);
     for (Index q = 0; q < segment.weights.size(); ++q) {
-      const PolynomialMap<3>::Evaluation projection = map.evaluate(segment.opposite_local.col(q).data());
+      const double* const local = segment.opposite_local.col(q).data();
+      const PolynomialMap<3>::Evaluation projection = map.evaluate(local);
       const auto [normal, sight_weight] = sight_of(projection, plane, n);
       if (sight_weight == 0.0) continue;
+      RimDistance::Value to_rim;
+      if (reference) to_rim = rim.evaluate(segment.opposite, reference->evaluate(local));
+      const SlidingVector along_rim =
+          to_rim.rises() ? rim_direction(projection, plane, n, to_rim) : SlidingVector(SlidingVector::Zero());
       const double gap = n.head(d).dot(at.positions.col(begin + q) - projection.at.head(d));
       for (std::size_t k = 0; k < here.size(); ++k) {
         if (included[k] == 0) continue;
@@ -177,21 +195,17 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
         const double weight = sight_weight * weighted(Index(k), begin + q);
         Sums& sum = sums[point];
         sum.weight += weight;
+        sum.cover += weight * to_rim.distance;
         sum.gap += weight * gap;
         sum.force += weight * normal;
         if (content == Content::gap) continue;
-        sum.pull += weight * gap * normal;
         SlidingView& view = views[point];
-        for (Index j = 0; j < at.node_count(); ++j) {
-          const double part = weight * (*at.displacement)(j, begin + q);
-          entry_of(view.own, at.nodes[j], 0.0) += part;
-          entry_of<SlidingVector>(view.row, at.nodes[j], SlidingVector::Zero()) += part * normal;
-        }
-        for (Index j = 0; j < shapes.rows(); ++j) {
-          const double part = weight * shapes(j, q);
-          entry_of(view.opposite, nodes[j], 0.0) += part;
-          entry_of<SlidingVector>(view.row, nodes[j], SlidingVector::Zero()) -= part * normal;
-        }
+        add_traces(nodes, begin + q, q, weight, view);
+        add_row(nodes, begin + q, q, weight * normal, view.row);
+        sum.pull += weight * gap * normal;
+        if (!to_rim.rises()) continue;
+        add_row(nodes, begin + q, q, weight * along_rim, view.rim);
+        sum.rim_pull += weight * gap * along_rim;
       }
     }
     begin += segment.weights.size();
@@ -199,21 +213,43 @@ void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segm
   if (content == Content::row) add_normal_derivative(facet, n, views);
 }
 
-/// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν).
+/// Adds the shape functions at points of the current own facet and of a segment, by their numbers there.
+void SlidingPair::Implementation::add_traces(const Index* opposite_nodes, Index own, Index opposite, double weight,
+                                             SlidingView& view) const {
+  const FacetQuadrature& at = points.quadrature;
+  for (Index j = 0; j < at.node_count(); ++j)
+    entry_of(view.own, at.nodes[j], 0.0) += weight * (*at.displacement)(j, own);
+  for (Index j = 0; j < shapes.rows(); ++j)
+    entry_of(view.opposite, opposite_nodes[j], 0.0) += weight * shapes(j, opposite);
+}
+
+/// Adds a force that acts on the own facet there, and against it on the opposite one.
+void SlidingPair::Implementation::add_row(const Index* opposite_nodes, Index own, Index opposite,
+                                          const SlidingVector& force, SlidingView::Vectors& row) const {
+  const FacetQuadrature& at = points.quadrature;
+  const SlidingVector nothing = SlidingVector::Zero();
+  for (Index j = 0; j < at.node_count(); ++j) entry_of(row, at.nodes[j], nothing) += (*at.displacement)(j, own) * force;
+  for (Index j = 0; j < shapes.rows(); ++j) entry_of(row, opposite_nodes[j], nothing) -= shapes(j, opposite) * force;
+}
+
+/// Adds −(∂n/∂x)ᵀ ∫ψ h ν/(n·ν), and likewise for the rim.
 void SlidingPair::Implementation::add_normal_derivative(int facet, const SlidingVector& n,
                                                         std::vector<SlidingView>& views) const {
   const std::vector<int>& here = points_of[std::size_t(facet)];
   const double length = current_normals[std::size_t(facet)].norm();
+  const auto add = [&](SlidingVector& pull, SlidingView::Vectors& row) {
+    const SlidingVector w = (n * n.dot(pull) - pull) / length;
+    normals[std::size_t(facet)].visit_derivative(data.body.space->nodes, evaluated_displacement, w,
+                                                 [&](Index node, const SlidingVector& value) {
+                                                   entry_of<SlidingVector>(row, node, SlidingVector::Zero()) += value;
+                                                 });
+    pull.setZero();
+  };
   for (std::size_t k = 0; k < here.size(); ++k) {
     if (included[k] == 0) continue;
     const auto point = std::size_t(here[k]);
-    SlidingVector& pull = sums[point].pull;
-    const SlidingVector w = (n * n.dot(pull) - pull) / length;
-    normals[std::size_t(facet)].visit_derivative(
-        data.body.space->nodes, evaluated_displacement, w, [&](Index node, const SlidingVector& value) {
-          entry_of<SlidingVector>(views[point].row, node, SlidingVector::Zero()) += value;
-        });
-    pull.setZero();
+    add(sums[point].pull, views[point].row);
+    if (!views[point].rim.empty()) add(sums[point].rim_pull, views[point].rim);
   }
 }
 
@@ -221,20 +257,29 @@ void SlidingPair::Implementation::add_normal_derivative(int facet, const Sliding
 void SlidingPair::Implementation::finish(std::size_t point, Content content, SlidingView& view) const {
   const Sums& sum = sums[point];
   const Point& of = data.points[point];
-  view.faces = sum.weight > least_sliding_cover * of.multiplier.weight;
+  const double cover = sum.cover / of.multiplier.weight;
+  view.faces = cover > least_cover;
   if (!view.faces) {
     view.own.clear();
     view.opposite.clear();
     view.row.clear();
+    view.rim.clear();
     return;
   }
   const double scale = 1.0 / sum.force.norm();
-  view.gap = sum.gap * scale + of.offset;
+  const RimAllowance allowance(cover);
+  view.distance = sum.gap * scale + of.offset;
+  view.gap = view.distance + sizes[point] * allowance.value;
   view.direction = scale * sum.force;
   if (content == Content::gap) return;
   for (auto& [node, value] : view.own) value /= sum.weight;
   for (auto& [node, value] : view.opposite) value /= sum.weight;
   for (auto& [node, value] : view.row) value *= scale;
+  if (allowance.slope != 0.0) {
+    const double factor = sizes[point] * allowance.slope / of.multiplier.weight;
+    for (const auto& [node, value] : view.rim)
+      entry_of<SlidingVector>(view.row, node, SlidingVector::Zero()) += factor * value;
+  }
   sort_by_node(view.own);
   sort_by_node(view.opposite);
   sort_by_node(view.row);
@@ -275,10 +320,11 @@ void SlidingPair::compute_views(const Vector& displacement, Content content, con
     own.sums[i] = {};
     SlidingView& view = views[i];
     view.faces = false;
-    view.gap = 0.0;
+    view.gap = view.distance = 0.0;
     view.own.clear();
     view.opposite.clear();
     view.row.clear();
+    view.rim.clear();
   }
   for (std::size_t facet = 0; facet < own.points_of.size(); ++facet)
     own.integrate_from(int(facet), content, left_out, any_depth, views);

@@ -26,7 +26,9 @@
 /// the own body is a unit vector, so that a reaction equals the force on the body. Points seen at grazing angles have
 /// reduced weight, by a smooth function of n·ν that is 1 up to 45 degrees, because points on the lateral faces at a
 /// corner appear and disappear. The derivatives of that function, of the length and of the boundary of Γ_i are
-/// neglected: they are multiplied by gaps, which are small where a force acts.
+/// neglected: they are multiplied by gaps, which are small where a force acts. Rims of the opposite surface are
+/// rounded: where little of a support faces it, a gap is larger by the allowance of rim_distance.hpp, whose derivative
+/// is part of the row.
 namespace ricochet {
 
 /// Vector of three components, the third 0 in 2D.
@@ -47,9 +49,11 @@ struct SlidingView {
 
   bool faces = false;       ///< false if it faces nothing; the other members are then empty
   double gap = 0.0;         ///< g_i
+  double distance = 0.0;    ///< g_i without the allowance at a rim
   SlidingVector direction;  ///< of the force on the own body, a unit vector
   Weights own, opposite;    ///< c_ij and m_ik, ascending by nodes; only in views with rows
   Vectors row;              ///< ∂g_i/∂x per node, ascending
+  Vectors rim;              ///< W ∂c/∂x, c the cover at a rim, part of which is in `row`; work space
 };
 
 class SlidingPair {

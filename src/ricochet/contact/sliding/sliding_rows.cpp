@@ -24,7 +24,7 @@ void SlidingRows::begin(const Vector& displacement, const Vector* start) {
   step_ = displacement - *start;
 }
 
-void SlidingRows::correct(SlidingView& view, std::optional<double> change, double rounding) {
+void SlidingRows::correct(SlidingView& view, double least, double most, double rounding) {
   const Index d = dimension();
   positions_.clear();
   motions_.clear();
@@ -38,7 +38,7 @@ void SlidingRows::correct(SlidingView& view, std::optional<double> change, doubl
     positions_.push_back(position);
     motions_.push_back(motion);
   }
-  const double missing = change.value_or(std::min(product, 0.0)) - product;
+  const double missing = std::clamp(product, least, most) - product;
   if (std::abs(missing) <= 0.25 * rounding) return;
   remove_rigid_part(positions_, d == 2, motions_);
   double square = 0.0;

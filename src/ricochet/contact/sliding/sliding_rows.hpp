@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "ricochet/contact/contact_rows.hpp"
@@ -22,11 +21,11 @@ class SlidingRows {
   /// Displacement increment of the step.
   [[nodiscard]] const Vector& step() const { return step_; }
 
-  /// Corrects the row so that its product with the step equals the change of the gap, or, if no change is
-  /// known, is not positive. A product that is too large could create energy and is always corrected; one
-  /// that is too small dissipates energy, and is corrected up to a fraction of the row. Deviations below a
-  /// fraction of `rounding` are ignored.
-  void correct(SlidingView& view, std::optional<double> change, double rounding);
+  /// Corrects the row so that its product with the step is between `least` and `most`: both are the change of the gap
+  /// if that is known and smooth. A product that is too large could create energy and is always corrected; one that is
+  /// too small dissipates energy, and is corrected up to a fraction of the row. Deviations below a fraction of
+  /// `rounding` are ignored.
+  void correct(SlidingView& view, double least, double most, double rounding);
   /// Writes the row of a point that faces something.
   void write(const SlidingPair::Point& point, const SlidingView& view, ContactRows& rows);
   /// Writes the row of a point that is far from contact, or faces nothing: that of a plane perpendicular to its normal.
