@@ -16,7 +16,8 @@ PACKAGING = SOURCE / "packaging"
 CALLED = {"Eigen3": ("eigen", "eigen"), "Basix": ("fenics-libbasix", "fenics-basix"), "fmt": ("fmt", "fmt"),
           "spdlog": ("spdlog", "spdlog"), "tomlplusplus": ("tomlplusplus", "tomlplusplus"), "muparser": ("muparser", "muparser"),
           "CLI11": ("cli11", "cli11"), "nlohmann_json": ("nlohmann_json", "nlohmann-json"), "ZLIB": ("zlib", "zlib-api"),
-          "BLAS": ("openblas", "openblas"), "cholmod": ("suitesparse", "suite-sparse"), "HDF5": ("hdf5", "hdf5")}
+          "BLAS": ("openblas", "openblas"), "cholmod": ("suitesparse", "suite-sparse"),
+          "umfpack": ("suitesparse", "suite-sparse"), "HDF5": ("hdf5", "hdf5")}
 STARTED = {"gmsh", "python", "meshio", "matplotlib"}
 
 

@@ -166,6 +166,14 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
+void Simulation::solve_exactly(std::size_t number, const ExactTangent& tangent, StageSolution& solution,
+                               Vector& unknowns) {
+  const int before = solution.iterations;
+  exact_stage_.solve(tangent, current_->stages.at(number).stage.conditions.eligible, solution, unknowns);
+  iterations_ += solution.iterations - before;
+  ++newton_iterations_;
+}
+
 /// Sets up the check of contact nodes, and of contact points that lie between nodes, against the obstacles that they
 /// touch, if these have another side.
 void Simulation::set_up_tunnelling_watches() {

@@ -12,6 +12,7 @@
 #include "ricochet/simulation/part_lengths.hpp"
 #include "ricochet/simulation/statics/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
+#include "ricochet/solver/exact/exact_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file Time stepping of a problem with a scheme.
@@ -98,6 +99,9 @@ class Simulation : private StageSolve {
   Stage& stage(std::size_t number) override;
   [[nodiscard]] double newton_tolerance() const override { return options_.newton_tolerance; }
   const StageSolution& solve(std::size_t number) override;
+  [[nodiscard]] bool solves_exactly() const override { return !problem_.ranks->are_several(); }
+  void solve_exactly(std::size_t number, const ExactTangent& tangent, StageSolution& solution,
+                     Vector& unknowns) override;
   [[nodiscard]] double renewal_price() const override { return current_->solver->renewal_price(); }
   void rotate_operators(const Vector& displacement) override { current_->solver->rotate_operators(displacement); }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
@@ -112,6 +116,7 @@ class Simulation : private StageSolve {
   ContactObserver observer_;
   std::map<int, Level> levels_;  ///< by k, for steps of length H 2^-k; without control H is the whole step
   Level* current_ = nullptr;
+  ExactStage exact_stage_{problem_};
   std::optional<StepControl> control_;
   double whole_step_;         ///< length, without control
   PartLengths part_lengths_;  ///< without control

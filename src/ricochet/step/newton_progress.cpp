@@ -63,11 +63,16 @@ NewtonProgress::Advice NewtonProgress::assess(double correction, double incremen
 /// earlier factorizations did not help, another one does not either, and iterations that still converge may continue.
 bool NewtonProgress::renewal_pays(double increment) const {
   if (!(recent_.back() > 0.0) || renewals_ >= thresholds_.helpful_renewals) return false;
+  const double left = std::log(recent_[0] / (tolerance_ * increment));
+  return expected_iterations(increment) - left / -std::log(thresholds_.renewed_rate) > renewal_price_;
+}
+
+double NewtonProgress::expected_iterations(double increment) const {
+  const double most = thresholds_.max_iterations;
+  if (!(recent_.back() > 0.0)) return most;
   const double rate = std::cbrt(recent_[0] / recent_.back());
   const double left = std::log(recent_[0] / (tolerance_ * increment));
-  const double most = thresholds_.max_iterations;
-  const double expected = rate < 1.0 ? std::min(left / -std::log(rate), most) : most;
-  return expected - left / -std::log(thresholds_.renewed_rate) > renewal_price_;
+  return rate < 1.0 ? std::min(left / -std::log(rate), most) : most;
 }
 
 Error NewtonProgress::failure(double correction) const {

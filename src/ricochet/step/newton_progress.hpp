@@ -43,6 +43,9 @@ class NewtonProgress {
   /// reason of the latter is a force that no factorization contains, such as that of contact, which rotates with the
   /// surface on which it acts.) Far from a solution, accelerated iterations may lead to another one.
   [[nodiscard]] bool wants_acceleration() const { return accelerates_ || decreases_near_; }
+  /// Number of iterations that are left at the mean rate of the last ones, up to max_iterations; this if there are too
+  /// few of them. `increment`: as in assess().
+  [[nodiscard]] double expected_iterations(double increment) const;
   [[nodiscard]] Error failure(double correction) const;
   [[nodiscard]] int iterations() const { return total_iterations_; }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <stdexcept>
+
+#include "ricochet/step/exact_tangent.hpp"
 #include "ricochet/step/stage.hpp"
 
 /// @file Interface by which a scheme solves the stages of its step.
@@ -16,6 +19,16 @@ class StageSolve {
   /// Solves a stage. The solution remains valid until this stage is solved again. Throws Error(not_converged) if there
   /// is none, or if it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
+
+  /// Whether solve_exactly() is available: not if the body is divided among ranks.
+  [[nodiscard]] virtual bool solves_exactly() const { return false; }
+  /// Solves the equations of an exact tangent with the eligible points of a stage. `solution`: on entry the reactions
+  /// of the last iteration, on return those of this one and the contact status; nothing else of it is set. Throws
+  /// Error(not_converged).
+  virtual void solve_exactly(std::size_t /*number*/, const ExactTangent& /*tangent*/, StageSolution& /*solution*/,
+                             Vector& /*unknowns*/) {
+    throw std::logic_error("exact tangents are not solved here");
+  }
 
   // For a nonlinear internal force, with displacements per dof:
   /// Error, relative to the increment of a step, that Newton iterations of the scheme itself (NewtonProgress) may leave

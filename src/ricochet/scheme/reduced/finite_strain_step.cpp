@@ -12,11 +12,6 @@ namespace ricochet {
 
 namespace {
 
-/// Largest motion of a node. Its norm does not depend on the axes, so that turned motions get the same advice.
-double largest_motion(const SemidiscreteProblem& problem, const Vector& motion) {
-  return motion.reshaped(problem.dimension, problem.nodes.cols()).colwise().norm().maxCoeff();
-}
-
 /// Work of a force on contact nodes and on rigid bodies that move freely.
 double on_contact(const SemidiscreteProblem& problem, const Vector& force, const Vector& increment) {
   double sum = 0.0;
@@ -36,6 +31,11 @@ double obstacle_work(Stage& stage, const Vector& normal, const Vector& tangentia
 
 }  // namespace
 
+/// The norm of a node's motion does not depend on the axes, so that rotated motions get the same advice.
+double FiniteStrainStep::largest_motion(const SemidiscreteProblem& problem, const Vector& motion) {
+  return motion.reshaped(problem.dimension, problem.nodes.cols()).colwise().norm().maxCoeff();
+}
+
 void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) {
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
@@ -43,6 +43,7 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
   contact_right_hand_side_.resize(Index(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
   lowest_rules_ = problem.internal_force->path_rules();
+  exact_.analyse(problem);
 }
 
 std::vector<OperatorCoefficients> FiniteStrainStep::operators(const SemidiscreteProblem& problem, double step,
@@ -228,7 +229,7 @@ void FiniteStrainStep::find_residual(const SemidiscreteProblem& problem, double 
 
 /// Closes the balance of momentum and energy. Returns false if the iterations must go on.
 bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
-                                     const StageSolution& solution, double correction) {
+                                     const StageSolution& solution, double correction, NewtonProgress& progress) {
   find_residual(problem, step, state, stage, solution);
   const double created = problem.contact.follows_motion() ? correction * solution.normal_reaction.sum() : 0.0;
   const SolvedStep solved{problem,
@@ -245,8 +246,8 @@ bool FiniteStrainStep::close_balance(const SemidiscreteProblem& problem, double 
                           work_of_mean_,
                           work_at_end_,
                           created};
-  if (balance_.close(solved, residual_, !progress_.is_tight()) == StepBalance::Verdict::closed) return true;
-  progress_.tighten();
+  if (balance_.close(solved, residual_, !progress.is_tight()) == StepBalance::Verdict::closed) return true;
+  progress.tighten();
   return false;
 }
 
@@ -275,14 +276,17 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
   return *solution;
 }
 
-void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
-                               StageSolve& stages, Vector& increment) {
+double FiniteStrainStep::rounding_of_positions(const SemidiscreteProblem& problem) const {
+  const double size = problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>();
+  return 8.0 * std::numeric_limits<double>::epsilon() * size;
+}
+
+void FiniteStrainStep::advance_with_kept_factor(const SemidiscreteProblem& problem, ActingReaction acting, double step,
+                                                State& state, StageSolve& stages, FailureMode mode, Vector& increment) {
   start(problem, step, state);
   stages.rotate_operators(middle_);
   evaluate(problem, step, state);
-  progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
-                      (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()),
-                  stages.renewal_price(), stages.newton_tolerance());
+  progress_.start(rounding_of_positions(problem), stages.renewal_price(), stages.newton_tolerance());
   Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
   while (true) {
     const StageSolution& solution = solve_iteration(problem, acting, step, state, stages);
@@ -300,16 +304,16 @@ void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReactio
       continue;
     }
     if (!is_done) {
-      apply_advice(problem, advice, iteration, stages);
+      apply_advice(problem, advice, iteration, mode, stages);
       continue;
     }
     try {
-      if (close_balance(problem, step, state, stage, solution, iteration.correction)) {
+      if (close_balance(problem, step, state, stage, solution, iteration.correction, progress_)) {
         finish(problem, step, state, stage, solution, increment);
         return;
       }
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || !freeze_pairs(problem)) throw;
+      if (error.kind() != ErrorKind::not_converged || mode == FailureMode::early || !freeze_pairs(problem)) throw;
     }
   }
 }

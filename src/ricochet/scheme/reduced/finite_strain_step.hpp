@@ -7,6 +7,7 @@
 #include "ricochet/problem/flight_prediction.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
+#include "ricochet/scheme/reduced/finite_strain_tangent.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/reduced/step_balance.hpp"
 #include "ricochet/scheme/reduced/step_loads.hpp"
@@ -59,6 +60,11 @@ namespace ricochet {
 struct FiniteStrainThresholds {
   double near_solution = 1e-2;   ///< correction relative to the increment, at which changes of strains are known
   int max_pair_iterations = 80;  ///< iterations after which pairs of facets that keep changing are frozen
+  /// Iterations with a kept factor after which the exact tangent is tried unless fewer are expected to be left, and
+  /// after which it is tried in any case.
+  int early_iterations = 30, max_early_iterations = 120;
+  /// Newton iterations with the exact tangent. None of them asks for a new factor: all have their own.
+  NewtonThresholds exact = {.max_iterations = 30, .helpful_renewals = 0, .max_renewals = 0};
 };
 
 class FiniteStrainStep {
@@ -79,9 +85,24 @@ class FiniteStrainStep {
     double correction = 0.0;  ///< largest motion of a node in the last correction
     double increment = 0.0;   ///< likewise in the increment so far
   };
+  class Wait;
   struct Reactions {
     Vector normal, tangential, acting_normal, acting_tangential;
   };
+  enum class FailureMode {
+    early,  ///< after few iterations, without frozen pairs: something else can be tried
+    late
+  };
+  enum class NewtonStart { flight, start_of_step };
+  [[nodiscard]] static double largest_motion(const SemidiscreteProblem& problem, const Vector& motion);
+  [[nodiscard]] double rounding_of_positions(const SemidiscreteProblem& problem) const;
+  void advance_with_kept_factor(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
+                                StageSolve& stages, FailureMode mode, Vector& increment);
+  [[nodiscard]] bool advance_exactly(const SemidiscreteProblem& problem, double step, State& state, StageSolve& stages,
+                                     Vector& increment);
+  void solve_exactly(const SemidiscreteProblem& problem, double step, State& state, StageSolve& stages,
+                     NewtonStart from, Vector& increment);
+  Iteration iterate_exactly(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages);
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state);
   void find_imbalance(const SemidiscreteProblem& problem, double step, const State& state, Vector& force);
@@ -93,7 +114,7 @@ class FiniteStrainStep {
   [[nodiscard]] bool freeze_pairs(const SemidiscreteProblem& problem);
   /// Follows the advice on the progress of an iteration. Throws Error(not_converged).
   void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Iteration& iteration,
-                    StageSolve& stages);
+                    FailureMode mode, StageSolve& stages);
   void require_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step, const State& state,
                        StageSolve& stages, Stage& stage);
@@ -102,10 +123,11 @@ class FiniteStrainStep {
   void find_residual(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
                      const StageSolution& solution);
   [[nodiscard]] bool close_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage,
-                                   const StageSolution& solution, double correction);
+                                   const StageSolution& solution, double correction, NewtonProgress& progress);
   void finish(const SemidiscreteProblem& problem, double step, State& state, Stage& stage,
               const StageSolution& solution, Vector& increment);
   void throw_if_inverted(const SemidiscreteProblem& problem);
+  void evaluate_prediction(const SemidiscreteProblem& problem, double step, const State& state);
   /// Evaluates the forces, and halves the last correction as long as it inverts cells. Returns whether it did.
   [[nodiscard]] bool evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state);
 
@@ -121,6 +143,11 @@ class FiniteStrainStep {
   Reactions reactions_;  ///< of the previous iteration in this step, if any
   bool has_reactions_ = false;
   QrAndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
+  FiniteStrainTangent exact_;
+  ExactTangent exact_tangent_;
+  StageSolution exact_solution_;  ///< of the last iteration with the exact tangent: only its reactions
+  NewtonProgress exact_progress_{thresholds_.exact};
+  Vector unknowns_;  ///< of the exact tangent
   StepEquations equations_;
   StepLoads loads_;
   double whole_step_ = 0.0;                        ///< length of a full step

@@ -14,12 +14,17 @@ bool FiniteStrainStep::freeze_pairs(const SemidiscreteProblem& problem) {
 }
 
 void FiniteStrainStep::apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice,
-                                    const Iteration& iteration, StageSolve& stages) {
+                                    const Iteration& iteration, FailureMode mode, StageSolve& stages) {
+  const int done = progress_.iterations();
+  const bool is_slow = done >= thresholds_.early_iterations &&
+                       progress_.expected_iterations(iteration.increment) > thresholds_.early_iterations;
+  if (mode == FailureMode::early && (is_slow || done >= thresholds_.max_early_iterations))
+    throw progress_.failure(iteration.correction);
   // Pairs may change from iteration to iteration.
   const bool is_stuck =
       advice == NewtonProgress::Advice::failed ||
       (advice == NewtonProgress::Advice::renew && progress_.iterations() > thresholds_.max_pair_iterations);
-  if (is_stuck && freeze_pairs(problem)) return;
+  if (is_stuck && mode == FailureMode::late && freeze_pairs(problem)) return;
   if (advice == NewtonProgress::Advice::failed) throw progress_.failure(iteration.correction);
   if (advice != NewtonProgress::Advice::renew) return;
   stages.renew_operators(middle_, end_);
@@ -42,6 +47,13 @@ bool FiniteStrainStep::raise_rules(const SemidiscreteProblem& problem, bool is_s
   raises_ = raises;
   path_increment_ = 2.0 * (end_ - middle_);
   return problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
+}
+
+/// Evaluates the forces of the flight, or of a part of it that inverts no cell: velocities of quasi-static motion,
+/// which alternate from step to step, may lead far away.
+void FiniteStrainStep::evaluate_prediction(const SemidiscreteProblem& problem, double step, const State& state) {
+  last_middle_ = last_end_ = state.displacement;
+  (void)evaluate_with_halving(problem, step, state);
 }
 
 bool FiniteStrainStep::evaluate_with_halving(const SemidiscreteProblem& problem, double step, const State& state) {

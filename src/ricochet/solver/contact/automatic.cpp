@@ -254,7 +254,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (!system.has_entries()) return iterate_with_products(iteration);
   const bool cold = current.reaction.isZero(0.0);
   if (!cold && iteration.is_done(current)) return "";
-  if (system.dense() != nullptr && !has_friction(system)) {
+  if (system.dense() != nullptr && system.is_symmetric() && !has_friction(system)) {
     PrimalDualActiveSet::Watch watch;
     if (options.record) {
       watch = [&](const ContactIterate& now) {
@@ -276,6 +276,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     iteration.current = best_.iterate;
   }
   if (sweeps_and_newton(iteration)) return "";
+  if (!system.is_symmetric()) return "Newton's method did not converge with this unsymmetric W";
   if (const std::string reason = find_contradiction(iteration); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
   if (may_leave_out_twins())

@@ -33,8 +33,11 @@ struct ContactProblem {
   Vector offset_rounding;            ///< size of the rounding error of q, per row. Empty: q is exact
   std::vector<char> eligible;        ///< per point: may have a reaction. Empty: all
   std::vector<Index> point_numbers;  ///< in the original problem; empty: 0, 1, …. For reports
-  double reaction_scale = 1.0;       ///< factor of r relative to the force (a power of two). For reports, not used by
-                                     ///< solvers
+  /// Whether W is symmetric and positive semi-definite. If it is neither, "automatic" still solves problems that are
+  /// near enough to such ones, as those of an exact tangent; other solvers require it.
+  bool is_symmetric = true;
+  double reaction_scale = 1.0;  ///< factor of r relative to the force (a power of two). For reports, not used by
+                                ///< solvers
 
   ContactProblem() = default;
   /// `dimension` rows per point: 1 (no friction), 2 or 3. One F for all points.

@@ -88,7 +88,8 @@ class ContactSolver {
   ContactSolver& operator=(const ContactSolver&) = delete;
 
   /// Analyses W and the points of `problem`; q, F, bounds and eligibility may change until the next call. Discards the
-  /// warm start. Throws Error(invalid_input), see ContactProblem::validate. W must be symmetric, which is not checked.
+  /// warm start. Throws Error(invalid_input), see ContactProblem::validate. W must be
+  /// symmetric unless ContactProblem::is_symmetric is false, which is not checked.
   virtual void analyse(const ContactProblem& problem) = 0;
   /// Starts from the reactions of the last solved problem, if there is one. Throws Error(invalid_input) if sizes or
   /// options are wrong; invalid values of W and q are reported in `solution.outcome`. Work space is kept from call to

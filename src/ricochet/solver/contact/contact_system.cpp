@@ -28,6 +28,7 @@ double power_of_two(double value) { return std::isnormal(value) ? std::ldexp(1.0
 
 void ContactSystem::analyse(const ContactProblem& problem) {
   operator_ = problem.contact_operator;
+  is_symmetric_ = problem.is_symmetric;
   problem_row_offset_ = problem.row_offset;
   gathered_.clear();
   row_of_.clear();

@@ -70,6 +70,8 @@ class ContactSystem {
   /// Error in W; empty if none has been found so far.
   [[nodiscard]] const std::string& fault() const { return fault_; }
   /// W′ of the system's rows if entries are available (no product operator of many rows).
+  /// Whether W is symmetric and positive semi-definite (ContactProblem::is_symmetric).
+  [[nodiscard]] bool is_symmetric() const { return is_symmetric_; }
   [[nodiscard]] const Matrix* dense() const { return mode_ == Mode::dense ? &matrix_ : nullptr; }
   [[nodiscard]] const SparseMatrix* sparse() const { return mode_ == Mode::sparse ? &sparse_ : nullptr; }
   [[nodiscard]] bool has_entries() const { return mode_ != Mode::product; }
@@ -132,6 +134,7 @@ class ContactSystem {
   void copy_sparse();
 
   Mode mode_ = Mode::dense;
+  bool is_symmetric_ = true;
   std::shared_ptr<const ContactOperator> operator_;
   std::shared_ptr<const ContactOperator> found_;  ///< entries of a product operator of few rows
   std::vector<Index> problem_row_offset_;

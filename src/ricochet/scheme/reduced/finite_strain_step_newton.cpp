@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/scheme/reduced/finite_strain_step.hpp"
+#include "ricochet/scheme/reduced/massless_contact_step.hpp"
+
+/// @file Newton's method with the exact tangent of a step.
+namespace ricochet {
+
+namespace {
+
+/// Key of State::memory: two waits (Wait), that of the kept factor and that of the exact tangent.
+constexpr const char* newton_waits = "newton_waits";
+
+}  // namespace
+
+/// Attempts for which a way to solve a step is not tried after it failed: more, the more often it has failed.
+class FiniteStrainStep::Wait {
+ public:
+  Wait(State& state, Index number) : memory_(state.memory[newton_waits]), first_(2 * number) {
+    if (memory_.size() == 0) memory_.setZero(State::memory_numbers);
+  }
+  /// Counts an attempt; returns whether the way is to be left out.
+  [[nodiscard]] bool goes_on() {
+    if (!(memory_[first_] > 0.0)) return false;
+    memory_[first_] -= 1.0;
+    return true;
+  }
+  void record(bool has_failed) {
+    memory_[first_ + 1] = has_failed ? std::min(2.0 * memory_[first_ + 1] + 1.0, most) : 0.0;
+    memory_[first_] = memory_[first_ + 1];
+  }
+
+ private:
+  static constexpr double most = 31.0;
+  Vector& memory_;
+  Index first_;
+};
+
+/// Solves the linear equations about the present iterate, and moves to their solution. Returns the size of that motion.
+FiniteStrainStep::Iteration FiniteStrainStep::iterate_exactly(const SemidiscreteProblem& problem, double step,
+                                                              const State& state, StageSolve& stages) {
+  const std::size_t number = MasslessContactStep::midpoint_stage(problem);
+  Stage& stage = stages.stage(number);
+  last_middle_ = middle_;
+  last_end_ = end_;
+  find_imbalance(problem, step, state, stage.right_hand_side.force);
+  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
+  equations_.prescribe(problem, state.time + step, half_way, stage);
+  if (problem.has_contact_dofs()) {
+    linearization_motion_.setZero(end_.size());
+    contact_.require(problem, ActingReaction::end, step, state, end_, equations_, stage, &linearization_motion_);
+    contact_residual_ = loads_.mean() - end_force_;
+    if (loads_.acts_at_ends()) contact_residual_ += loads_.beside_at_end();
+  } else {
+    stage.conditions.eligible.clear();
+    stage.motion.reset();
+  }
+  const StepIterate at{problem,
+                       contact_cells_.get(),
+                       step,
+                       state,
+                       path_rules_,
+                       middle_,
+                       end_,
+                       path_increment_,
+                       stage.right_hand_side.force,
+                       contact_residual_,
+                       stage};
+  exact_.assemble(at, exact_solution_, exact_tangent_);
+  stages.solve_exactly(number, exact_tangent_, exact_solution_, unknowns_);
+  exact_.write_increments(at, unknowns_, motion_, next_end_);
+  Iteration iteration{std::max(largest_motion(problem, next_end_), 2.0 * largest_motion(problem, motion_)), 0.0};
+  middle_ += motion_;
+  end_ += next_end_;
+  motion_ = 2.0 * (middle_ - base_);
+  iteration.increment = largest_motion(problem, motion_);
+  return iteration;
+}
+
+/// Takes a step by Newton's method with the exact tangent. Throws Error(not_converged).
+void FiniteStrainStep::solve_exactly(const SemidiscreteProblem& problem, double step, State& state, StageSolve& stages,
+                                     NewtonStart from, Vector& increment) {
+  start(problem, step, state);
+  if (from == NewtonStart::start_of_step) end_ = middle_ = state.displacement;
+  evaluate_prediction(problem, step, state);
+  lagged_.release();
+  exact_solution_ = {};
+  exact_solution_.normal_reaction = state.forces.normal_reaction;
+  exact_solution_.tangential_reaction = state.forces.tangential_reaction;
+  log::debug(from == NewtonStart::flight ? "exact tangent: begins with the flight"
+                                         : "exact tangent: begins with the start of the step");
+  exact_progress_.start(rounding_of_positions(problem), std::numeric_limits<double>::infinity(),
+                        stages.newton_tolerance());
+  Stage& stage = stages.stage(MasslessContactStep::midpoint_stage(problem));
+  while (true) {
+    const Iteration iteration = iterate_exactly(problem, step, state, stages);
+    const NewtonProgress::Advice advice = exact_progress_.assess(iteration.correction, iteration.increment);
+    const bool is_done = !evaluate_with_halving(problem, step, state) && advice == NewtonProgress::Advice::done;
+    const bool is_near = iteration.correction <= thresholds_.near_solution * iteration.increment;
+    if ((is_done || is_near) && raise_rules(problem, is_done)) {
+      evaluate(problem, step, state);
+      exact_progress_.restart();
+      continue;
+    }
+    if (advice == NewtonProgress::Advice::failed) throw exact_progress_.failure(iteration.correction);
+    if (!is_done) continue;
+    if (close_balance(problem, step, state, stage, exact_solution_, iteration.correction, exact_progress_)) break;
+  }
+  finish(problem, step, state, stage, exact_solution_, increment);
+}
+
+/// Takes a step from the flight and, if that fails, from its start. Returns false if neither converges.
+bool FiniteStrainStep::advance_exactly(const SemidiscreteProblem& problem, double step, State& state,
+                                       StageSolve& stages, Vector& increment) {
+  for (const NewtonStart from : {NewtonStart::flight, NewtonStart::start_of_step}) {
+    try {
+      solve_exactly(problem, step, state, stages, from, increment);
+      return true;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged) throw;
+      if (log::enabled(log::Level::debug)) log::debug(std::string("exact tangent: ") + error.what());
+    }
+  }
+  return false;
+}
+
+/// Tries iterations with a kept factor and the exact tangent, in this order or, where the former have just failed, in
+/// the other one; finally the former without a limit, and with frozen pairs.
+void FiniteStrainStep::advance(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
+                               StageSolve& stages, Vector& increment) {
+  if (!stages.solves_exactly())
+    return advance_with_kept_factor(problem, acting, step, state, stages, FailureMode::late, increment);
+  Wait kept(state, 0), exact(state, 1);
+  const auto try_exactly = [&] {
+    if (exact.goes_on()) return false;
+    const bool is_done = advance_exactly(problem, step, state, stages, increment);
+    exact.record(!is_done);
+    return is_done;
+  };
+  const bool exact_first = kept.goes_on();
+  if (exact_first && try_exactly()) return;
+  try {
+    advance_with_kept_factor(problem, acting, step, state, stages, FailureMode::early, increment);
+    kept.record(false);
+    return;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::not_converged) throw;
+    if (log::enabled(log::Level::debug)) log::debug(std::string("kept factor: ") + error.what());
+    kept.record(true);
+  }
+  if (!exact_first && try_exactly()) return;
+  advance_with_kept_factor(problem, acting, step, state, stages, FailureMode::late, increment);
+}
+
+}  // namespace ricochet
