@@ -197,6 +197,28 @@ TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
   EXPECT_GT(off, 0.1 * radius);
 }
 
+/// A plate without thickness: a point that is inside, less deep than the radius, passes the border.
+TEST_F(RigidSurfaces, HaveContinuousGapsAcrossABorder) {
+  const Vector3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0);
+  constexpr double radius = 0.1;
+  const auto plate = shape({{{a, b, c}, {a, c, d}}, true}, {{"edge_radius", radius}});
+  for (const double height : {-0.05, 0.0, 0.03, 0.2}) {
+    double before = plate->gap(SpaceVector(Vector3(0.4, 0.8, height)));
+    EXPECT_NEAR(before, height, 1e-15);
+    for (double y = 0.8; y < 1.4; y += 1e-4) {
+      const SpaceVector at = Vector3(0.4, y, height);
+      const double gap = plate->gap(at);
+      ASSERT_LT(std::abs(gap - before), 1.01e-4) << y;
+      before = gap;
+      constexpr double step = 1e-6;
+      if (std::abs(y - 1.0) < 2e-4) continue;
+      const SpaceVector ahead = Vector3(0.4, y + step, height), behind = Vector3(0.4, y - step, height);
+      ASSERT_NEAR(plate->gradient(at)[1], (plate->gap(ahead) - plate->gap(behind)) / (2.0 * step), 1e-6);
+    }
+    EXPECT_GT(before, 0.3);
+  }
+}
+
 /// The derivative of the gap in all regions: near edges and corners, and beyond the radius.
 TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
   const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});

@@ -116,6 +116,16 @@ class Surface final : public ObstacleShape {
     if (!(blended.norm() > least_length)) return exact;
     return {(1.0 - part) * height + part * exact.gap, blended};
   }
+  /// Beyond a border the surface bends away from the bodies as a quarter of a tube of the radius R: with the distance s
+  /// along the surface and the height z above it the gap is √(s² + (R + z)²) − R, which is z at the border itself. A
+  /// sharp border, without a radius, would close and open a penetrating point that passes it.
+  [[nodiscard]] GapAndGradient beyond_border(const Vector3& away, double along, const Vector3& normal) const {
+    const Vector3 from_axis = away + radius_ * normal;
+    const double length = from_axis.norm();
+    // Far behind the surface, where the tube does not reach, nothing is near.
+    if (!(along > -radius_) || !(length > 0.0)) return {away.norm(), away.normalized()};
+    return {length - radius_, from_axis / length};
+  }
   /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
   /// too near to distinguish. Beyond a border no point is behind the surface.
   [[nodiscard]] GapAndGradient evaluate_exact(const Vector3& at, const RigidSurface::Foot& foot) const {
@@ -125,7 +135,7 @@ class Surface final : public ObstacleShape {
     constexpr double near = 1e-10;
     const Vector3 size = at.cwiseAbs() + foot.position.cwiseAbs();
     if (distance <= near * size.maxCoeff()) return {side_ * (along < 0.0 ? -distance : distance), side_ * foot.normal};
-    if (foot.on_border) return {distance, away / distance};
+    if (foot.on_border) return beyond_border(away, along, foot.normal);
     const double sign = along < 0.0 ? -side_ : side_;
     return {sign * distance, sign / distance * away};
   }
