@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/step/contact_conditions.hpp"
 
 namespace ricochet {
@@ -31,6 +32,8 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     // Iterations that settle by themselves do so to the rounding of the gaps.
     const double error =
         iteration <= thresholds_.plain_iterations ? remaining.beyond_rounding : remaining.beyond_all_rounding;
+    if (log::enabled(log::Level::debug) && iteration > 0)
+      log::debug(fmt::format("contact that rotates: iteration {}, gaps wrong by {:.2e}", iteration, error));
     if (error <= 0.0) break;
     if (error < thresholds_.progress * best_error) {
       best_error = error;

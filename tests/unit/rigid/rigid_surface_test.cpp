@@ -217,6 +217,13 @@ TEST_F(RigidSurfaces, HaveContinuousGapsAcrossABorder) {
     }
     EXPECT_GT(before, 0.3);
   }
+  double before = plate->gap(SpaceVector(Vector3(0.4, 1.07, 0.2)));
+  for (double height = 0.2; height > -0.4; height -= 1e-4) {
+    const double gap = plate->gap(SpaceVector(Vector3(0.4, 1.07, height)));
+    ASSERT_LT(std::abs(gap - before), 1.01e-4) << height;
+    before = gap;
+  }
+  EXPECT_NEAR(before, 0.07 - radius, 1e-12);
 }
 
 /// The derivative of the gap in all regions: near edges and corners, and beyond the radius.
@@ -306,11 +313,12 @@ TEST_F(RigidSurfaces, AreInThePlaneToo) {
     EXPECT_NEAR(square->gap(Eigen::Vector2d(0.5, -0.25)), 0.25, 1e-15);
     EXPECT_LT((square->normal(Eigen::Vector2d(0.5, -0.25)) - Eigen::Vector2d(0, -1)).norm(), 1e-15);
   }
-  // The obstacle lies above, on the right of a line that runs to the left; beyond its ends no point is inside.
+  // The obstacle lies above, on the right of a line that runs to the left; at its ends it has walls.
   const auto line = polygon("1 0\n-1 0\n");
   EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, -0.2)), 0.2, 1e-15);
   EXPECT_NEAR(line->gap(Eigen::Vector2d(0.3, 0.2)), -0.2, 1e-15);
-  EXPECT_NEAR(line->gap(Eigen::Vector2d(4.0, 4.0)), 5.0, 1e-15);
+  EXPECT_NEAR(line->gap(Eigen::Vector2d(4.0, 4.0)), 3.0, 1e-15);
+  EXPECT_NEAR(line->gap(Eigen::Vector2d(4.0, -4.0)), 5.0, 1e-15);
   EXPECT_THROW((void)polygon("1 0\n-1 0\n", {{"side", std::string("inside")}}), Error);
   EXPECT_THROW((void)polygon("1 0\n-1 0 3\n"), Error);
   EXPECT_THROW((void)polygon("1 0\n-1 b\n"), Error);

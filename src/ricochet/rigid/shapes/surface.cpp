@@ -117,13 +117,14 @@ class Surface final : public ObstacleShape {
     return {(1.0 - part) * height + part * exact.gap, blended};
   }
   /// Beyond a border the surface bends away from the bodies as a quarter of a tube of the radius R: with the distance s
-  /// along the surface and the height z above it the gap is √(s² + (R + z)²) − R, which is z at the border itself. A
-  /// sharp border, without a radius, would close and open a penetrating point that passes it.
+  /// along the surface and the height z above it the gap is √(s² + (R + z)²) − R, which is z at the border itself.
+  /// Below the tube, z < −R, it ends in a wall, with the gap s − R: the obstacle is everything behind the surface, and
+  /// a point that came in from the side would be deep inside at once.
   [[nodiscard]] GapAndGradient beyond_border(const Vector3& away, double along, const Vector3& normal) const {
-    const Vector3 from_axis = away + radius_ * normal;
+    const Vector3 aside = away - along * normal;
+    const Vector3 from_axis = along > -radius_ ? Vector3(away + radius_ * normal) : aside;
     const double length = from_axis.norm();
-    // Far behind the surface, where the tube does not reach, nothing is near.
-    if (!(along > -radius_) || !(length > 0.0)) return {away.norm(), away.normalized()};
+    if (!(length > 0.0)) return {away.norm(), away.normalized()};
     return {length - radius_, from_axis / length};
   }
   /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
