@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -42,9 +41,12 @@ void ExactStage::factorize(const ExactTangent& tangent) {
                             "operations",
                             tangent.matrix.rows(), operations));
   }
-  if (factor_.factorize()) factor_.solve(tangent.right_hand_side, free_);
-  if (free_.size() != tangent.right_hand_side.size() || !free_.allFinite())
+  const auto refuse = [] {
     throw Error(ErrorKind::not_converged, "the exact tangent of the step is singular: nothing resists some motion");
+  };
+  if (!factor_.factorize()) refuse();
+  factor_.solve(tangent.right_hand_side, free_);
+  if (!free_.allFinite()) refuse();
 }
 
 void ExactStage::add_points(const ExactTangent& tangent, const std::vector<Index>& points) {
@@ -177,7 +179,7 @@ void ExactStage::write_solution(StageSolution& solution) const {
   const Index points = problem_.contact.size(), tangents = problem_.dimension - 1;
   const int before = solution.iterations;
   solution.open_all(points, problem_.contact.has_friction() ? tangents : 0);
-  solution.iterations = before + contact_solution_.iterations;
+  solution.iterations = before + (points_.empty() ? 0 : contact_solution_.iterations);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Index point = points_[i], row = contact_.row_offset[i];
     solution.contact_status[std::size_t(point)] = contact_solution_.status[i];
