@@ -124,11 +124,10 @@ class Surface final : public ObstacleShape {
     const Vector3 aside = away - along * normal;
     const Vector3 from_axis = along > -radius_ ? Vector3(away + radius_ * normal) : aside;
     const double length = from_axis.norm();
-    if (!(length > 0.0)) return {away.norm(), away.normalized()};
-    return {length - radius_, from_axis / length};
+    return {length - radius_, length > 0.0 ? Vector3(from_axis / length) : normal};
   }
   /// Returns the distance and its derivative: the direction towards the point, or the normal of the edge if the two are
-  /// too near to distinguish. Beyond a border no point is behind the surface.
+  /// too near to distinguish; beyond a border those of its rounding.
   [[nodiscard]] GapAndGradient evaluate_exact(const Vector3& at, const RigidSurface::Foot& foot) const {
     const Vector3 away = at - foot.position;
     const double along = away.dot(foot.normal), distance = away.norm();
