@@ -5,7 +5,7 @@ import math
 import re
 import statistics
 
-from harness import History, TestCase, run
+from harness import History, TestCase, between_plates, run
 
 RING = """SetFactory("OpenCASCADE");
 Disk(1) = {0, 2.5, 0, 2.5};
@@ -24,24 +24,7 @@ density = 1.1e-9
 law = "neo-hookean"
 young = 3.0
 poisson = 0.49
-[obstacle.bottom]
-type = "plane"
-point = [0, 0]
-normal = [0, 1]
-[obstacle.top]
-type = "plane"
-point = [0, 5.0]
-normal = [0, -1]
-motion = ["0", "-1.5*min(t/1.65,1)"]
-[[contact]]
-group = "skin"
-obstacle = "bottom"
-friction = 0.3
-[[contact]]
-group = "skin"
-obstacle = "top"
-friction = 0.3
-[time]
+""" + between_plates("-1.5*min(t/1.65,1)") + """[time]
 step = 0.03
 end = 1.65
 [[probe]]

@@ -62,6 +62,28 @@ SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": 
            "semi-explicit": "equivalent-lumped", "reduced-kane": "equivalent"}
 
 
+def between_plates(motion):
+    """Returns obstacles and contacts for a disc of diameter 5 with the boundary "skin" on a plate, under another one that moves."""
+    return """[obstacle.bottom]
+type = "plane"
+point = [0, 0]
+normal = [0, 1]
+[obstacle.top]
+type = "plane"
+point = [0, 5.0]
+normal = [0, -1]
+motion = ["0", "MOTION"]
+[[contact]]
+group = "skin"
+obstacle = "bottom"
+friction = 0.3
+[[contact]]
+group = "skin"
+obstacle = "top"
+friction = 0.3
+""".replace("MOTION", motion)
+
+
 def method(scheme, preset="textbook-half"):
     """Returns the settings that give a case a scheme, with its mass; newmark also needs its parameters."""
     values = {"time.scheme": scheme, "mass.type": SCHEMES[scheme]}

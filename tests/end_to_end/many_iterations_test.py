@@ -3,7 +3,7 @@ cheaper."""
 
 import re
 
-from harness import History, TestCase, run, settings
+from harness import History, TestCase, between_plates, run, settings
 
 RING_GEO = """SetFactory("OpenCASCADE");
 Disk(1) = {0, 2.5, 0, 2.5, 2.5};
@@ -23,24 +23,7 @@ law = "mooney-rivlin"
 c10 = 0.4
 c01 = 0.1
 bulk_modulus = 1000.0
-[obstacle.bottom]
-type = "plane"
-point = [0, 0]
-normal = [0, 1]
-[obstacle.top]
-type = "plane"
-point = [0, 5.0]
-normal = [0, -1]
-motion = ["0", "-20*t"]
-[[contact]]
-group = "skin"
-obstacle = "bottom"
-friction = 0.3
-[[contact]]
-group = "skin"
-obstacle = "top"
-friction = 0.3
-[time]
+""" + between_plates("-20*t") + """[time]
 step = 4e-3
 end = 0.04
 [solver]

@@ -23,6 +23,18 @@ void visit_point(const ContactRows& rows, Index point, const Visit& visit) {
   for (Index row = point * tangents; row < (point + 1) * tangents; ++row) rows.visit_tangential(row, visit);
 }
 
+/// Adds the rows of a point to those of G and B_T.
+void add_rows(const ContactRows& rows, Index point, std::vector<Eigen::Triplet<double>>& normal,
+              std::vector<Eigen::Triplet<double>>& tangential) {
+  const auto enter = [](Index row, std::vector<Eigen::Triplet<double>>& to) {
+    return [row, &to](Index dof, double value) { to.emplace_back(int(row), int(dof), value); };
+  };
+  const Index tangents = rows.dimension() - 1;
+  rows.visit_normal(point, enter(point, normal));
+  for (Index row = point * tangents; row < (point + 1) * tangents; ++row)
+    rows.visit_tangential(row, enter(row, tangential));
+}
+
 void assemble(const std::vector<Eigen::Triplet<double>>& entries, Index rows, Index columns, auto& matrix) {
   matrix.resize(rows, columns);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -33,11 +45,7 @@ void assemble(const std::vector<Eigen::Triplet<double>>& entries, Index rows, In
 void ContactTangent::store_rows(const ContactRows& rows, Index dofs) {
   const Index tangents = rows.dimension() - 1;
   Triplets normal, tangential;
-  for (Index i = 0; i < rows.size(); ++i) {
-    rows.visit_normal(i, [&](Index dof, double value) { normal.emplace_back(int(i), int(dof), value); });
-    for (Index row = i * tangents; row < (i + 1) * tangents; ++row)
-      rows.visit_tangential(row, [&](Index dof, double value) { tangential.emplace_back(int(row), int(dof), value); });
-  }
+  for (Index i = 0; i < rows.size(); ++i) add_rows(rows, i, normal, tangential);
   assemble(normal, rows.size(), dofs, normal_rows_);
   assemble(tangential, rows.size() * tangents, dofs, tangential_rows_);
 }
@@ -117,11 +125,7 @@ void ContactTangent::use_rows_at_jumps(const ContactRows& rows) {
   std::erase_if(gap_entries_, [&](const auto& entry) { return jumps_[std::size_t(entry.row())] != 0; });
   std::erase_if(slip_entries_, [&](const auto& entry) { return jumps_[std::size_t(entry.row() / tangents)] != 0; });
   for (Index i = 0; i < rows.size(); ++i) {
-    if (jumps_[std::size_t(i)] == 0) continue;
-    rows.visit_normal(i, [&](Index dof, double value) { gap_entries_.emplace_back(int(i), int(dof), value); });
-    for (Index row = i * tangents; row < (i + 1) * tangents; ++row)
-      rows.visit_tangential(row,
-                            [&](Index dof, double value) { slip_entries_.emplace_back(int(row), int(dof), value); });
+    if (jumps_[std::size_t(i)] != 0) add_rows(rows, i, gap_entries_, slip_entries_);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/mesh/search/closest_point.hpp"
 
 namespace ricochet {
 
@@ -32,26 +33,15 @@ Vector3 position_of(const DisplacementSpace& space, Index node) {
   return result;
 }
 
-/// Longest distance between vertices of a facet.
-double size_of(const DisplacementSpace& space, Index facet) {
-  const std::vector<Vertices> edges = edges_of(space, facet);
-  double size = 0.0;
-  for (const Vertices& one : edges) {
-    for (const Vertices& other : edges)
-      size = std::max(size, (position_of(space, one[0]) - position_of(space, other[1])).norm());
-  }
-  return size;
-}
-
 }  // namespace
 
-RimDistance::RimDistance(const DisplacementSpace& space, const std::vector<Index>& facets) {
-  std::map<Vertices, std::vector<Index>> facets_at_edge;
+RimDistance::RimDistance(const DisplacementSpace& space, const FacetSurface& surface) {
+  std::map<Vertices, std::vector<const FacetSurface::Facet*>> facets_at_edge;
   std::map<Index, std::vector<Index>> facets_at_vertex;
-  for (const Index facet : facets) {
-    for (const Vertices& edge : edges_of(space, facet)) {
-      facets_at_edge[edge].push_back(facet);
-      for (const Index vertex : edge) facets_at_vertex[vertex].push_back(facet);
+  for (const FacetSurface::Facet& facet : surface.facets()) {
+    for (const Vertices& edge : edges_of(space, facet.number)) {
+      facets_at_edge[edge].push_back(&facet);
+      for (const Index vertex : edge) facets_at_vertex[vertex].push_back(facet.number);
     }
   }
   for (const auto& [edge, of] : facets_at_edge) {
@@ -61,7 +51,7 @@ RimDistance::RimDistance(const DisplacementSpace& space, const std::vector<Index
       near.insert(near.end(), facets_at_vertex[vertex].begin(), facets_at_vertex[vertex].end());
     std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
-    const Edge rim{position_of(space, edge[0]), position_of(space, edge[1]), rim_width * size_of(space, of.front())};
+    const Edge rim{position_of(space, edge[0]), position_of(space, edge[1]), rim_width * of.front()->size};
     for (const Index facet : near) edges_at_[facet].push_back(rim);
   }
 }
@@ -69,10 +59,7 @@ RimDistance::RimDistance(const DisplacementSpace& space, const std::vector<Index
 RimDistance::Value RimDistance::evaluate(Index facet, const PolynomialMap<3>::Evaluation& reference) const {
   Value result;
   for (const Edge& edge : edges_at_.at(facet)) {
-    const Vector3 along = edge.to - edge.from, away = reference.at - edge.from;
-    const double square = along.squaredNorm();
-    const double part = square > 0.0 ? std::clamp(along.dot(away) / square, 0.0, 1.0) : 0.0;
-    const Vector3 from_edge = away - part * along;
+    const Vector3 from_edge = reference.at - closest_on_segment(reference.at, edge.from, edge.to).position;
     const double length = from_edge.norm(), value = length / edge.width;
     if (!(value < result.distance)) continue;
     result.distance = value;

@@ -26,7 +26,6 @@ inline constexpr double rim_width = 0.25;
 struct RimAllowance {
   double value = 0.0, slope = 0.0;
 
-  RimAllowance() = default;
   explicit RimAllowance(double cover) {
     constexpr double whole = 2.0 / 3.0 * rim_width * rim_width * rim_width, height = 0.5 * rim_width;
     if (!(cover < whole)) return;
@@ -41,15 +40,14 @@ struct RimAllowance {
 /// has it.
 class RimDistance {
  public:
-  /// `facets` of the surface, numbered through all blocks.
-  RimDistance(const DisplacementSpace& space, const std::vector<Index>& facets);
+  RimDistance(const DisplacementSpace& space, const FacetSurface& surface);
 
   struct Value {
     double distance = 1.0;                   ///< ρ
     std::array<double, 2> slopes{0.0, 0.0};  ///< ∂ρ/∂ξ along the reference axes of the facet
     [[nodiscard]] bool rises() const { return slopes[0] != 0.0 || slopes[1] != 0.0; }
   };
-  /// Whether ρ may be below 1 somewhere on a facet.
+  /// Whether ρ may be below 1 somewhere on a facet, numbered through all blocks.
   [[nodiscard]] bool is_near(Index facet) const { return edges_at_.contains(facet); }
   /// Evaluates ρ on a facet at the point with this reference position.
   [[nodiscard]] Value evaluate(Index facet, const PolynomialMap<3>::Evaluation& reference) const;

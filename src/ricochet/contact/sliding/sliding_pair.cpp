@@ -92,7 +92,7 @@ struct SlidingPair::Implementation {
         plane(data.body.space->dimension == 2),
         is_self(data.is_self()),
         surfaces(data.body, data.facets, data.opposite_facets),
-        rim(*data.body.space, data.opposite_facets) {
+        rim(*data.body.space, surfaces.opposite()) {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
       for (const FacetSurface::Facet& facet : surface->facets())
         least_height = std::min(least_height, facet.cell_height);

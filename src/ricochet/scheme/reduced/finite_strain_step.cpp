@@ -104,17 +104,23 @@ void FiniteStrainStep::find_imbalance(const SemidiscreteProblem& problem, double
   force -= (2.0 / step) * damping_force_;
 }
 
-/// Computes b of the stage: the residual at the middle.
+/// Computes b of the stage, the residual at the middle without forces of contact, and δ at supports.
+void FiniteStrainStep::balance_middle(const SemidiscreteProblem& problem, double step, const State& state,
+                                      Stage& stage) {
+  find_imbalance(problem, step, state, stage.right_hand_side.force);
+  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
+  equations_.prescribe(problem, state.time + step, half_way, stage);
+}
+
+/// Completes b by the force of lagged rows.
 void FiniteStrainStep::require_balance(const SemidiscreteProblem& problem, double step, const State& state,
                                        Stage& stage) {
-  find_imbalance(problem, step, state, stage.right_hand_side.force);
+  balance_middle(problem, step, state, stage);
   if (problem.contact.follows_motion() && has_reactions_) {
     lagged_row_force_.setZero();
     lagged_.add_difference(reactions_.normal, reactions_.tangential, lagged_row_force_);
     stage.right_hand_side.force += lagged_row_force_;
   }
-  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
-  equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
 /// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b

@@ -34,10 +34,9 @@
 ///
 /// Iterations end when the increment is accurate enough (StageSolve::newton_tolerance). Velocities at the end then
 /// compensate for the residual R of the forces, for the moments about x of contact forces between bodies, whose rows
-/// belong to the mean of both ends, and for all other errors of the balance (step_balance.hpp): momenta
-/// change by impulses, and energy by the terms above, to rounding, with any tolerance. Contact conditions hold to
-/// rounding in every iteration. d' counts as numerical dissipation as far as the step really loses it, and d' < 0
-/// counts as zero.
+/// belong to the mean of both ends, and for all other errors of the balance (step_balance.hpp): momenta change by
+/// impulses, and energy by the terms above, to rounding, with any tolerance. Contact conditions hold to rounding in
+/// every iteration. d' counts as numerical dissipation as far as the step really loses it, and d' < 0 counts as zero.
 ///
 /// A pressure P(u, t) that follows the surface is added as P(x), with the mean of the pressures at both ends, to L̄ in
 /// the equations at x, so that over a closed surface it has neither resultant nor moment about x; as P(u₁) to L₁; and
@@ -64,7 +63,7 @@ struct FiniteStrainThresholds {
   /// after which it is tried in any case.
   int early_iterations = 30, max_early_iterations = 120;
   /// Newton iterations with the exact tangent. None of them asks for a new factor: all have their own.
-  NewtonThresholds exact = {.max_iterations = 30, .helpful_renewals = 0, .max_renewals = 0};
+  NewtonThresholds exact = {.max_iterations = 30, .max_renewals = 0};
 };
 
 class FiniteStrainStep {
@@ -115,6 +114,7 @@ class FiniteStrainStep {
   /// Follows the advice on the progress of an iteration. Throws Error(not_converged).
   void apply_advice(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Iteration& iteration,
                     FailureMode mode, StageSolve& stages);
+  void balance_middle(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step, const State& state,
                        StageSolve& stages, Stage& stage);

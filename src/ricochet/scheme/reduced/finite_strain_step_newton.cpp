@@ -46,9 +46,7 @@ FiniteStrainStep::Iteration FiniteStrainStep::iterate_exactly(const Semidiscrete
   Stage& stage = stages.stage(number);
   last_middle_ = middle_;
   last_end_ = end_;
-  find_imbalance(problem, step, state, stage.right_hand_side.force);
-  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
-  equations_.prescribe(problem, state.time + step, half_way, stage);
+  balance_middle(problem, step, state, stage);
   if (problem.has_contact_dofs()) {
     linearization_motion_.setZero(end_.size());
     contact_.require(problem, ActingReaction::end, step, state, end_, equations_, stage, &linearization_motion_);
@@ -71,7 +69,7 @@ FiniteStrainStep::Iteration FiniteStrainStep::iterate_exactly(const Semidiscrete
                        stage};
   exact_.assemble(at, exact_solution_, exact_tangent_);
   stages.solve_exactly(number, exact_tangent_, exact_solution_, unknowns_);
-  exact_.write_increments(at, unknowns_, motion_, next_end_);
+  exact_.write_increments(unknowns_, motion_, next_end_);
   Iteration iteration{std::max(largest_motion(problem, next_end_), 2.0 * largest_motion(problem, motion_)), 0.0};
   middle_ += motion_;
   end_ += next_end_;

@@ -1,7 +1,5 @@
 #include "ricochet/scheme/reduced/finite_strain_tangent.hpp"
 
-#include <algorithm>
-
 namespace ricochet {
 
 void FiniteStrainTangent::analyse(const SemidiscreteProblem& problem) {
@@ -138,9 +136,8 @@ void FiniteStrainTangent::assemble(const StepIterate& at, const Reactions& react
   tangent.right_hand_side = right_;
 }
 
-void FiniteStrainTangent::write_increments(const StepIterate& at, const Vector& unknowns, Vector& middle,
-                                           Vector& end) const {
-  middle.resize(at.middle.size());
+void FiniteStrainTangent::write_increments(const Vector& unknowns, Vector& middle, Vector& end) const {
+  middle.resize(Index(middle_.size()));
   end.resize(middle.size());
   const auto value = [&](const std::pair<int, double>& motion, std::size_t dof) {
     return motion.second * (motion.first >= 0 ? unknowns[motion.first] : known_[dof]);

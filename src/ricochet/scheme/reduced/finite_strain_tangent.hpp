@@ -44,7 +44,7 @@ class FiniteStrainTangent {
   /// Linearizes the equations about an iterate, with the forces of these reactions.
   void assemble(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent);
   /// Computes the increments of x and u₁ per dof from the unknowns.
-  void write_increments(const StepIterate& at, const Vector& unknowns, Vector& middle, Vector& end) const;
+  void write_increments(const Vector& unknowns, Vector& middle, Vector& end) const;
 
  private:
   /// A motion of a dof: this factor times this unknown, or times its known value if the unknown is −1.
@@ -61,7 +61,7 @@ class FiniteStrainTangent {
   Motions middle_, end_, path_, path_of_end_;  ///< motions of x, u₁, and Δ̂ by x and by u₁, per dof
   std::vector<double> known_;                  ///< increments of x at supports, per dof
   Triplets entries_;
-  Vector right_;
+  Vector right_;  ///< r
   ContactTangent contact_;
 };
 

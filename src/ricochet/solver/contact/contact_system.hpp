@@ -69,9 +69,9 @@ class ContactSystem {
   [[nodiscard]] bool data_are_finite() const { return data_are_finite_; }
   /// Error in W; empty if none has been found so far.
   [[nodiscard]] const std::string& fault() const { return fault_; }
-  /// W′ of the system's rows if entries are available (no product operator of many rows).
   /// Whether W is symmetric and positive semi-definite (ContactProblem::is_symmetric).
   [[nodiscard]] bool is_symmetric() const { return is_symmetric_; }
+  /// W′ of the system's rows if entries are available (no product operator of many rows).
   [[nodiscard]] const Matrix* dense() const { return mode_ == Mode::dense ? &matrix_ : nullptr; }
   [[nodiscard]] const SparseMatrix* sparse() const { return mode_ == Mode::sparse ? &sparse_ : nullptr; }
   [[nodiscard]] bool has_entries() const { return mode_ != Mode::product; }
