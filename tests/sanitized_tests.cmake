@@ -21,7 +21,7 @@ set(RICOCHET_SANITIZE_TESTS
   unit.simulation.restitution unit.simulation.self_overlap unit.simulation.sliding_watch unit.solver.choose_method
   unit.solver.contact.contact_point unit.solver.contact.contact_solver_data unit.solver.contact.dependent_conditions
   unit.solver.contact.friction_robustness unit.solver.contact.twin_points unit.solver.contact_candidates
-  unit.solver.delassus_columns unit.solver.moved_product unit.solver.reaction_path unit.solver.rotating_rows
+  unit.solver.delassus_columns unit.solver.moved_product unit.solver.reaction_path unit.solver.contact_basis
   unit.study.benchmark.manifest unit.study.benchmark.methods unit.study.benchmark.scorecard
   unit.study.history_errors unit.study.order_columns unit.study.plan unit.study.result_columns
   unit.study.run_folders unit.study.run_state unit.study.table

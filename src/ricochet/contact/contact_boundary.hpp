@@ -97,6 +97,7 @@ struct ContactBoundary {
   Vector weights;                                   ///< D_i > 0: length in 2D, area in 3D and of rings
   Vector friction_coefficient;                      ///< F
   Vector friction_bound;                            ///< a force, bound × D_i; 0 if none
+  std::vector<char> rows_follow;                    ///< 1 if its rows follow the motion
   SparseRowMatrix trace;                            ///< t, points × nodes of the space: c, and −m between bodies
   SparseRowMatrix own_trace;                        ///< c, the weights of a point's mean position
   Vector net;                                       ///< Σ_j t_ij: 1 at obstacles, 0 between bodies
@@ -130,6 +131,9 @@ struct ContactBoundary {
     return has_friction_elsewhere || (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
   }
   [[nodiscard]] bool follows_motion() const { return geometry != nullptr; }
+  [[nodiscard]] bool follows_motion(Index point) const {
+    return !rows_follow.empty() && rows_follow[std::size_t(point)] != 0;
+  }
   /// Calls visit(node, t_ij) for the nodes in the trace of a point.
   template <class Visit>
   void visit_nodes(Index point, const Visit& visit) const {

@@ -34,7 +34,6 @@ void persist(Visitor& visit, Rows& rows) {
   visit(ContactAxes{tangent}, rows.slips);
   visit(ContactAxes{point, dof}, rows.gap_operator);
   visit(ContactAxes{tangent, dof}, rows.tangential_trace);
-  visit(ContactAxes{point, node}, rows.rotating_trace);
   visit(ContactAxes{}, rows.sliding_state);
 }
 
@@ -48,7 +47,7 @@ void persist(Visitor& visit, Boundary& contact) {
         contact.rows);
   visit(ContactAxes{none, facet}, contact.facets);
   visit(ContactAxes{point}, contact.pair, contact.initial_gap, contact.weights, contact.friction_coefficient,
-        contact.friction_bound, contact.net, contact.large_sliding);
+        contact.friction_bound, contact.rows_follow, contact.net, contact.large_sliding);
   visit(ContactAxes{point, node}, contact.trace, contact.own_trace);
   visit(ContactAxes{entry}, contact.node_pair, contact.is_opposite, contact.node_normals, contact.node_initial_gap);
   visit(ContactAxes{entry, node}, contact.nodes);

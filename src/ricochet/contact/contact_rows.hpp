@@ -19,9 +19,6 @@ struct ContactFrames {
   /// For contact between bodies that slide far, whose rows involve other nodes as the bodies move: the displacements
   /// from which the rows were computed. Empty if rows have the same pattern for the whole run.
   Vector sliding_state;
-  /// c, points × nodes, for points whose rows have exactly the entries c ⊗ n and c ⊗ t, whatever their directions; the
-  /// rows of all other points are empty. Null if the directions of all points are constant.
-  std::shared_ptr<const SparseRowMatrix> rotating_trace;
 };
 
 /// Row i of the gap operator G = c ⊗ nᵀ and rows (d−1)i … of B_T = c ⊗ tᵀ are the derivatives of point i's gap and of

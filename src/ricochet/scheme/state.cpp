@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <utility>
 
-#include "ricochet/contact/row_values.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
@@ -93,9 +92,7 @@ void persist(const SnapshotVisitor& visit, const SemidiscreteProblem& problem, S
   visit("obstacle_increment.in_space", increment.in_space, problem.dimension, points, 0);
   visit("iterations", state.iterations);
   visit("newton_rounds", state.newton_iterations);
-  persist_memory(
-      visit, {dofs, problem.supports.size(), tangents, row_value_count(*problem.contact.rows), State::memory_numbers},
-      state.memory);
+  persist_memory(visit, {dofs, problem.supports.size(), tangents, State::memory_numbers}, state.memory);
 }
 
 }  // namespace ricochet

@@ -50,7 +50,7 @@ TEST(SlidingCost, AnIterationProjectsTheSurfacesThreeTimes) {
           },
           false);
       EXPECT_GT(largest, 0.0);
-      EXPECT_GT(iterations, 5 * steps);
+      EXPECT_GT(iterations, 4 * steps);
       EXPECT_LE(geometry.projection_count() - before, 3 * iterations + 2 * steps) << dimension << "D, F " << friction;
     }
   }

@@ -39,6 +39,7 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.weights.resize(count);
   boundary.net.resize(count);
   boundary.large_sliding.assign(std::size_t(count), 0);
+  boundary.rows_follow.assign(std::size_t(count), 0);
   boundary.friction_coefficient.resize(count);
   boundary.friction_bound.resize(count);
 }
@@ -158,6 +159,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     }
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
+    boundary.rows_follow[std::size_t(number)] = patch.follows_motion() ? 1 : 0;
     operators.add(
         number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
         patch.rotating_normals.empty() || patch.slides ? std::vector<Index>{} : patch.rotating_normals[i].nodes(),
@@ -165,22 +167,10 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
   }
 }
 
-/// Returns the trace of the points whose directions rotate, at obstacles that are not free rigid bodies.
-std::shared_ptr<const SparseRowMatrix> rotating_trace(const CurvedContactData& data) {
-  std::vector<char> rotates(static_cast<std::size_t>(data.trace.rows()), 0);
-  for (const CurvedContactData::Point& point : data.points)
-    rotates[std::size_t(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
-  if (std::ranges::find(rotates, 1) == rotates.end()) return nullptr;
-  auto result = std::make_shared<SparseRowMatrix>(data.trace);
-  result->prune([&](Index row, Index, double) { return rotates[std::size_t(row)] != 0; });
-  return result;
-}
-
 /// Creates the geometry of points and nodes at curved obstacles; null if there are none.
 std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Patches& patches,
                                                       const std::vector<ContactPair>& pairs,
-                                                      const FreeComponent& is_free, const ContactBoundary& boundary,
-                                                      ContactRows& rows) {
+                                                      const FreeComponent& is_free, const ContactBoundary& boundary) {
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
     const auto found = std::ranges::find(data.obstacles, obstacle);
@@ -206,7 +196,6 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   data.trace = boundary.trace;
-  rows.rotating_trace = rotating_trace(data);
   return make_curved_contact(std::move(data));
 }
 
@@ -214,7 +203,7 @@ std::unique_ptr<ContactGeometry> make_curved_geometry(const Body& body, const Pa
 void follow_motion(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
                    const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
   std::vector<std::unique_ptr<ContactGeometry>> parts;
-  parts.push_back(make_curved_geometry(body, patches, pairs, is_free, boundary, rows));
+  parts.push_back(make_curved_geometry(body, patches, pairs, is_free, boundary));
   parts.push_back(make_rotating_geometry(body, pairs, patches, is_free, boundary));
   parts.push_back(make_sliding_geometry(body, pairs, patches, is_free, boundary));
   std::erase(parts, nullptr);

@@ -67,10 +67,7 @@ void FiniteStrainStep::start(const SemidiscreteProblem& problem, double step, co
   path_increment_ = 2.0 * (end_ - middle_);
   problem.internal_force->raise_path_rules(middle_, path_increment_, path_rules_);
   raises_ = 0;
-  has_reactions_ = false;
   acceleration_.restart();
-  if (problem.contact.follows_motion()) lagged_.start(state);
-  lagged_row_force_.setZero(problem.dof_count());
   end_contact_force_.setZero(problem.dof_count());
   mean_contact_force_.setZero(problem.dof_count());
   balance_.start(problem, state, step / whole_step_);
@@ -112,33 +109,19 @@ void FiniteStrainStep::balance_middle(const SemidiscreteProblem& problem, double
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// Completes b by the force of lagged rows.
-void FiniteStrainStep::require_balance(const SemidiscreteProblem& problem, double step, const State& state,
-                                       Stage& stage) {
-  balance_middle(problem, step, state, stage);
-  if (problem.contact.follows_motion() && has_reactions_) {
-    lagged_row_force_.setZero();
-    lagged_.add_difference(reactions_.normal, reactions_.tangential, lagged_row_force_);
-    stage.right_hand_side.force += lagged_row_force_;
-  }
-}
-
-/// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b
-/// and L₁ contain the force of lagged rows.
+/// Imposes contact at the end with the contact nodes, at δ = 0, at u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c).
 void FiniteStrainStep::require_contact(const SemidiscreteProblem& problem, ActingReaction acting, double step,
                                        const State& state, StageSolve& stages, Stage& stage) {
-  contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side.force + lagged_row_force_;
+  contact_residual_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side.force;
   if (loads_.acts_at_ends()) contact_residual_ += loads_.beside_at_end();
   problem.gather_contact(contact_residual_, contact_right_hand_side_);
   const Vector& shift = MasslessContactStep::solve_contact_nodes(problem, contact_right_hand_side_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
-  lagged_.release();
   // Conditions that follow the motion are linear about the end of the previous iteration: −m there, in place of δ = 0.
   linearization_motion_.setZero(end_.size());
   for (const Index dof : problem.contact_dofs) linearization_motion_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
   contact_.require(problem, acting, step, state, end_, equations_, stage, &linearization_motion_);
-  if (!problem.contact.follows_motion()) return;
-  lagged_.replace_rows(linearization_motion_, stage);
+  if (problem.contact.follows_motion()) stage.motion.reset();  // an iteration has the rows of its start
 }
 
 /// Updates x += δ, u₁ += 2δ, on contact nodes 2m.
@@ -152,7 +135,6 @@ FiniteStrainStep::Iteration FiniteStrainStep::correct(const SemidiscreteProblem&
   motion_ = 2.0 * (middle_ - last_middle_);
   iteration.correction = std::max(iteration.correction, largest_motion(problem, motion_));
   end_ = next_end_;
-  has_reactions_ = true;
   reactions_.normal = solution.normal_reaction;
   reactions_.tangential = solution.tangential_reaction;
   reactions_.acting_normal = solution.acting_normal();
@@ -204,7 +186,6 @@ void FiniteStrainStep::finish(const SemidiscreteProblem& problem, double step, S
     state.forces.damping_force *= 1.0 / step;
   }
   contact_.update_drift(problem, before_, state);
-  if (problem.contact.follows_motion()) lagged_.remember(state);
   balance_.finish(state);
 }
 
@@ -264,7 +245,7 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
   Stage& stage = stages.stage(number);
   last_middle_ = middle_;
   last_end_ = end_;
-  require_balance(problem, step, state, stage);
+  balance_middle(problem, step, state, stage);
   if (!problem.has_contact_dofs()) {
     stage.conditions.eligible.clear();
     stage.motion.reset();
@@ -278,7 +259,6 @@ const StageSolution& FiniteStrainStep::solve_iteration(const SemidiscreteProblem
     if (error.kind() == ErrorKind::not_converged) throw_if_inverted(problem);
     throw;
   }
-  if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
   return *solution;
 }
 

@@ -8,7 +8,6 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/finite_strain_tangent.hpp"
-#include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/reduced/step_balance.hpp"
 #include "ricochet/scheme/reduced/step_loads.hpp"
 #include "ricochet/scheme/scheme.hpp"
@@ -139,9 +138,7 @@ class FiniteStrainStep {
   NewtonProgress progress_;
   StepBalance balance_;
   EndContact contact_;
-  LaggedRows lagged_;    ///< for rows that follow the motion
   Reactions reactions_;  ///< of the previous iteration in this step, if any
-  bool has_reactions_ = false;
   QrAndersonAcceleration acceleration_{NewtonThresholds().stored_iterations};
   FiniteStrainTangent exact_;
   ExactTangent exact_tangent_;
@@ -161,10 +158,9 @@ class FiniteStrainStep {
   Vector contact_residual_;      ///< L₁ + P_c(u₁) − f_c(u₁) − 2 b_c
   Vector residual_;              ///< R
   Vector next_end_, contact_right_hand_side_, damping_force_, before_, last_middle_, last_end_;
-  Vector motion_;            ///< of an iteration, to be measured
-  Vector scratch_;           ///< a force that is evaluated for its error alone
-  Vector point_, image_;     ///< of an accelerated iteration
-  Vector lagged_row_force_;  ///< of the reactions, along rows less the lagged ones
+  Vector motion_;         ///< of an iteration, to be measured
+  Vector scratch_;        ///< a force that is evaluated for its error alone
+  Vector point_, image_;  ///< of an accelerated iteration
 };
 
 }  // namespace ricochet

@@ -84,7 +84,6 @@ void FiniteStrainStep::solve_exactly(const SemidiscreteProblem& problem, double 
   start(problem, step, state);
   if (from == NewtonStart::start_of_step) end_ = middle_ = state.displacement;
   evaluate_prediction(problem, step, state);
-  lagged_.release();
   exact_solution_ = {};
   exact_solution_.normal_reaction = state.forces.normal_reaction;
   exact_solution_.tangential_reaction = state.forces.tangential_reaction;

@@ -36,44 +36,19 @@ Index DelassusProblem::rows_of(Index point) const {
   return has_friction ? problem_.dimension : 1;
 }
 
-/// Columns of E, d for every point, cost a point without friction more than its one row does. They are worthwhile if
-/// the factor lasts.
-bool DelassusProblem::rotates(Index point) const {
-  if (rows_->rotating_trace == nullptr || !SparseRowMatrix::InnerIterator(*rows_->rotating_trace, point)) return false;
-  return rows_of(point) == problem_.dimension || problem_.internal_force->is_linear();
-}
-
-/// Calls enter(row of the point, dof, value) for the entries of H.
-template <class Enter>
-void DelassusProblem::visit_rows(Index point, const Enter& enter) const {
-  const Index tangents = problem_.dimension - 1;
-  rows_->visit_normal(point, [&](Index dof, double value) { enter(Index{0}, dof, value); });
-  for (Index k = 1; k < rows_of(point); ++k)
-    rows_->visit_tangential(point * tangents + k - 1, [&](Index dof, double value) { enter(k, dof, value); });
-}
-
 void DelassusProblem::start_again_with(const std::vector<Index>& points) {
   candidates_.clear();
   revision_.clear();
   candidate_counts_.clear();
   columns_.clear();
-  rotating_rows_.clear();
+  basis_.clear();
+  dof_batches_.clear();
   if (massless_nodes_) massless_nodes_->clear();
   column_product_.resize(0, 0);
   contact_.contact_operator.reset();
   contact_.row_offset.assign(1, 0);
   solver_.reset();
   if (!points.empty()) add_candidates(points);
-}
-
-/// Calls enter(row of the point, dof, value) for the entries of E.
-template <class Enter>
-void DelassusProblem::visit_columns(Index point, const Enter& enter) const {
-  if (!rotates(point)) return visit_rows(point, enter);
-  const Index d = problem_.dimension;
-  for (SparseRowMatrix::InnerIterator entry(*rows_->rotating_trace, point); entry; ++entry) {
-    for (Index k = 0; k < d; ++k) enter(k, entry.col() * d + k, entry.value());
-  }
 }
 
 /// Sorts points by their position in the elimination tree: points whose dofs are close there have nearly the same
@@ -103,10 +78,28 @@ void DelassusProblem::add_candidates(std::vector<Index> points) {
 
 void DelassusProblem::append_candidates(const std::vector<Index>& points) {
   Vector start = solver_ != nullptr ? contact_solution_.reaction : Vector();
+  Matrix w = release_column_product();
+  append_rows(points, w);
+  append_dofs(missing_dofs(), w);
+  prepare_contact(std::move(w), std::move(start));
+}
+
+/// Appends points with their rows. Of a point whose rows follow the motion, E has the dofs that append_dofs() gives it.
+void DelassusProblem::append_rows(const std::vector<Index>& points, Matrix& w) {
   candidates_.add_candidates(points);
   candidate_counts_.push_back(Index(candidates_.points().size()));
-  Matrix w = release_column_product();
-  append_columns(points, w);
+  const Index first = basis_.size();
+  for (const Index point : points) {
+    contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
+    basis_.append_candidate(rows_of(point), problem_.contact.follows_motion(point));
+    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[std::size_t(point)]);
+  }
+  append_columns(first, w);
+}
+
+/// Sets the contact problem of all candidates, with reactions of the former ones, and none on the others.
+void DelassusProblem::prepare_contact(Matrix w, Vector start) {
+  read_directions();
   append_supported();
   const auto count = Index(candidates_.points().size());
   coefficient_.resize(count);
@@ -125,7 +118,6 @@ void DelassusProblem::append_candidates(const std::vector<Index>& points) {
   set_contact_operator(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
-  // Reactions of the former candidates, and none on the others.
   const Index before = start.size();
   start.conservativeResize(contact_.row_offset.back());
   start.tail(start.size() - before).setZero();
@@ -134,19 +126,19 @@ void DelassusProblem::append_candidates(const std::vector<Index>& points) {
 }
 
 void DelassusProblem::persist(const SnapshotVisitor& visit) {
-  std::vector<Index> points = candidates_.points(), counts = candidate_counts_;
+  std::vector<Index> points = candidates_.points(), counts = candidate_counts_, batches = dof_batches_;
+  std::vector<int> dofs = basis_.dofs();
   double scale = scale_;
   visit("candidates", points, {0, problem_.contact.size() - 1});
   visit("taken_up", counts, {1, Index(points.size())});
+  visit("dofs", dofs, {0, problem_.dof_count() - 1});
+  visit("dof_batches", batches, {0, std::max(Index(counts.size()), Index(dofs.size()))});
   visit("scale", scale);
   if (visit.loads()) {
     // Scale of the factor that the state has: a solver whose reactions are rescaled loses its history.
     scale_ = contact_.reaction_scale = factor_.scale();
     start_again_with({});
-    for (const Index end : counts) {
-      const auto begin = Index(candidates_.points().size());
-      if (end > begin) append_candidates({points.begin() + begin, points.begin() + end});
-    }
+    if (!points.empty()) append_batches(points, counts, dofs, batches);
   }
   candidates_.persist_history(visit);
   if (solver_ == nullptr) return;
@@ -158,51 +150,29 @@ void DelassusProblem::persist(const SnapshotVisitor& visit) {
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }
 
-/// Returns Eᵀ of some points, one after the other: unknowns × rows.
-SparseMatrix DelassusProblem::transposed_columns(const std::vector<Index>& points, const std::vector<int>& number,
-                                                 Index unknowns) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  Index row = 0;
-  for (const Index point : points) {
-    visit_columns(point, [&](Index k, Index dof, double value) {
-      const int unknown = number[std::size_t(dof)];
-      if (unknown >= 0) entries.emplace_back(unknown, int(row + k), value);
-    });
-    row += rotates(point) ? problem_.dimension : rows_of(point);
+/// Appends candidates and dofs in the batches of a run that is continued: the bits of W depend on them.
+void DelassusProblem::append_batches(const std::vector<Index>& points, const std::vector<Index>& counts,
+                                     const std::vector<int>& dofs, const std::vector<Index>& batches) {
+  Matrix w;
+  std::size_t batch = 0;
+  Index begin = 0, first_dof = 0;
+  for (const Index end : counts) {
+    if (end <= begin) continue;
+    append_rows({points.begin() + begin, points.begin() + end}, w);
+    begin = end;
+    for (; batch + 1 < batches.size() && batches[batch] <= Index(candidate_counts_.size()); batch += 2) {
+      const Index last_dof = std::clamp(batches[batch + 1], first_dof, Index(dofs.size()));
+      append_dofs({dofs.begin() + first_dof, dofs.begin() + last_dof}, w);
+      first_dof = last_dof;
+    }
   }
-  SparseMatrix transposed(unknowns, row);
-  transposed.setFromTriplets(entries.begin(), entries.end());
-  return transposed;
-}
-
-void DelassusProblem::append_columns(const std::vector<Index>& points, Matrix& w) {
-  for (const Index point : points) {
-    contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
-    rotating_rows_.append(*rows_, point, rows_of(point), rotates(point));
-    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[std::size_t(point)]);
-  }
-  columns_.append(transposed_columns(points, unknown_, factor_.size()), w);
-  if (massless_nodes_)
-    massless_nodes_->append(transposed_columns(points, massless_nodes_->unknown(), massless_nodes_->size()));
-}
-
-void DelassusProblem::append_supported() {
-  std::vector<Eigen::Triplet<double>> entries;
-  const std::vector<Index>& dofs = problem_.supports.dofs();
-  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
-    visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
-      const auto support = std::ranges::lower_bound(dofs, dof);
-      if (support == dofs.end() || *support != dof) return;
-      entries.emplace_back(int(contact_.row_offset[i] + k), int(support - dofs.begin()), value);
-    });
-  }
-  supported_.resize(contact_.row_offset.back(), problem_.supports.size());
-  supported_.setFromTriplets(entries.begin(), entries.end());
+  std::ranges::fill(revision_, -1);  // rows are those of the next stage
+  prepare_contact(std::move(w), {});
 }
 
 void DelassusProblem::find_offsets(const LinearStage& stage, const Vector& y) {
-  columns_.motion(y, rotating_rows_.any() ? of_columns_ : contact_.offset);
-  if (rotating_rows_.any()) rotating_rows_.rotate(of_columns_, contact_.offset);
+  columns_.motion(y, basis_.any_follows() ? of_columns_ : contact_.offset);
+  if (basis_.any_follows()) basis_.to_rows(of_columns_, contact_.offset);
   if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.right_hand_side.prescribed;
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
@@ -246,8 +216,8 @@ void DelassusProblem::solve(const LinearStage& stage, Vector& y, StageSolution& 
   }
   candidates_active_ = true;
   const Vector& acting = has_mean ? mean_.mean() : contact_solution_.reaction;
-  if (rotating_rows_.any()) rotating_rows_.rotate_back(acting, of_columns_);
-  columns_.add_reaction(rotating_rows_.any() ? of_columns_ : acting, y);
+  if (basis_.any_follows()) basis_.to_basis(acting, of_columns_);
+  columns_.add_reaction(basis_.any_follows() ? of_columns_ : acting, y);
   write_solution(stage, solution);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/solver/corotated/rotating_rows.hpp"
+#include "ricochet/solver/delassus/contact_basis.hpp"
 #include "ricochet/solver/delassus/contact_candidates.hpp"
 #include "ricochet/solver/delassus/delassus_columns.hpp"
 #include "ricochet/solver/delassus/massless_contact_nodes.hpp"
@@ -19,7 +19,7 @@
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
 /// For a stage with massless contact nodes, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, it is
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
-/// If directions rotate, columns are those of E with H = D E (rotating_rows.hpp).
+/// If rows follow the motion, columns are those of E with H = D E (contact_basis.hpp).
 namespace ricochet {
 
 class DelassusProblem {
@@ -49,29 +49,35 @@ class DelassusProblem {
 
  private:
   [[nodiscard]] Index rows_of(Index point) const;
-  [[nodiscard]] bool rotates(Index point) const;
   template <class Enter>
   void visit_rows(Index point, const Enter& enter) const;
-  template <class Enter>
-  void visit_columns(Index point, const Enter& enter) const;
+  template <class Visit>
+  void visit_following(const Visit& visit) const;
+  void read_directions();
+  [[nodiscard]] std::vector<int> missing_dofs() const;
+  void append_dofs(const std::vector<int>& dofs, Matrix& w);
+  void rebuild_columns(Matrix& w);
   void set_rows(const LinearStage& stage);
   void set_scale(double scale);
   void scale_warm_start(double ratio);
-  void renew_columns(const std::vector<char>& is_new);
+  void renew_columns(const std::vector<char>& is_new, Matrix& w);
   void use_condensed(Matrix w);
   void add_candidates(std::vector<Index> points);
   void append_candidates(const std::vector<Index>& points);
+  void append_rows(const std::vector<Index>& points, Matrix& w);
+  void append_batches(const std::vector<Index>& points, const std::vector<Index>& counts, const std::vector<int>& dofs,
+                      const std::vector<Index>& batches);
+  void prepare_contact(Matrix w, Vector start);
   bool choose_candidates(const LinearStage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_tree_position(std::vector<Index>& points) const;
-  [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
-                                                Index unknowns) const;
+  [[nodiscard]] SparseMatrix transposed_columns(Index first, const std::vector<int>& unknown, Index unknowns) const;
   [[nodiscard]] Matrix release_column_product();
   void set_contact_operator(Matrix w);
   void use_end_weight(double theta);
   void add_initial_candidates(const LinearStage& stage);
   void solve_mean(const LinearStage& stage);
-  void append_columns(const std::vector<Index>& points, Matrix& w);
+  void append_columns(Index first, Matrix& w);
   void append_supported();
   void regularize_directions_without_trace(Matrix& w) const;
   void find_offsets(const LinearStage& stage, const Vector& y);
@@ -100,7 +106,10 @@ class DelassusProblem {
   ContactCandidates candidates_;
   std::vector<Index> candidate_counts_;  ///< number of candidates after each call of add_candidates
   DelassusColumns columns_;
-  RotatingRows rotating_rows_;
+  ContactBasis basis_;
+  /// Unit rows of E were appended in batches: for each the number of batches of candidates before it, and that of unit
+  /// rows after it.
+  std::vector<Index> dof_batches_;
   Vector of_columns_;                                     ///< per row of E
   std::unique_ptr<MasslessContactNodes> massless_nodes_;  ///< null if the stage has no massless contact nodes
   Matrix column_product_;  ///< of columns, with massless contact nodes or rotating rows; else it is the contact
@@ -114,5 +123,14 @@ class DelassusProblem {
   Vector motion_;       ///< G δ, per contact point
   int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may require several
 };
+
+/// Calls enter(row of the point, dof, value) for the entries of H.
+template <class Enter>
+void DelassusProblem::visit_rows(Index point, const Enter& enter) const {
+  const Index tangents = problem_.dimension - 1;
+  rows_->visit_normal(point, [&](Index dof, double value) { enter(Index{0}, dof, value); });
+  for (Index k = 1; k < rows_of(point); ++k)
+    rows_->visit_tangential(point * tangents + k - 1, [&](Index dof, double value) { enter(k, dof, value); });
+}
 
 }  // namespace ricochet

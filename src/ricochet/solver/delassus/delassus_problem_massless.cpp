@@ -10,33 +10,6 @@
 
 namespace ricochet {
 
-/// Updates the rows of the stage: for candidates with changed rows, renews W, and columns if rows do more than rotate.
-void DelassusProblem::set_rows(const LinearStage& stage) {
-  rows_ = &stage.rows;
-  const bool all_new = has_new_factor_;
-  has_new_factor_ = false;
-  if (all_new) set_scale(factor_.scale());
-  if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
-  std::vector<char> is_new(static_cast<std::size_t>(rotating_rows_.size()), all_new ? 1 : 0);
-  bool any = all_new, have_columns = !all_new;
-  for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
-    const long revision = rows_->revision[std::size_t(candidates_.points()[i])];
-    if (revision == revision_[i]) continue;
-    revision_[i] = revision;
-    any = true;
-    rotating_rows_.read_directions(*rows_, candidates_.points()[i], i);
-    if (rotating_rows_.rotates(i)) continue;
-    have_columns = false;
-    std::fill(is_new.begin() + rotating_rows_.first(i), is_new.begin() + rotating_rows_.first(i + 1), char{1});
-  }
-  if (!any) return;
-  if (have_columns) {
-    use_condensed(release_column_product());
-  } else {
-    renew_columns(is_new);
-  }
-}
-
 void DelassusProblem::invalidate_columns() { has_new_factor_ = true; }
 
 /// Rescales by powers of two: nothing is rounded.
@@ -52,15 +25,6 @@ void DelassusProblem::set_scale(double scale) {
 
 void DelassusProblem::scale_warm_start(double ratio) {
   if (ratio != 1.0 && solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
-}
-
-void DelassusProblem::renew_columns(const std::vector<char>& is_new) {
-  Matrix w = release_column_product();
-  columns_.renew(transposed_columns(candidates_.points(), unknown_, factor_.size()), is_new, w);
-  if (massless_nodes_)
-    massless_nodes_->renew(
-        transposed_columns(candidates_.points(), massless_nodes_->unknown(), massless_nodes_->size()), is_new);
-  use_condensed(std::move(w));
 }
 
 /// Sets the operator for other rows of the same candidates; the contact solver keeps its memory.
@@ -84,17 +48,12 @@ void DelassusProblem::regularize_directions_without_trace(Matrix& w) const {
   }
 }
 
-/// Returns YᵀY of the present candidates, on rows of E.
-Matrix DelassusProblem::release_column_product() {
-  if (massless_nodes_ || rotating_rows_.any()) return std::move(column_product_);
-  return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
-}
-
 /// Sets the operator of the contact problem from YᵀY of all candidates.
 void DelassusProblem::set_contact_operator(Matrix w) {
-  if (rotating_rows_.any()) {
+  const bool any_follows = basis_.any_follows();
+  if (any_follows) {
     column_product_ = std::move(w);
-    w = rotating_rows_.product(column_product_);
+    w = basis_.product(column_product_);
   }
   if (!massless_nodes_) {
     regularize_directions_without_trace(w);
@@ -102,10 +61,10 @@ void DelassusProblem::set_contact_operator(Matrix w) {
     return;
   }
   Matrix massless_compliance = massless_nodes_->compliance() / scale_;
-  if (rotating_rows_.any()) massless_compliance = rotating_rows_.product(massless_compliance);
+  if (any_follows) massless_compliance = basis_.product(massless_compliance);
   mean_.prepare((1.0 - 0.5 * massless_nodes_->weight()) * massless_compliance, w - massless_compliance,
                 contact_.row_offset, massless_nodes_->acting());
-  if (!rotating_rows_.any()) column_product_ = std::move(w);
+  if (!any_follows) column_product_ = std::move(w);
   use_end_weight(mean_.theta());
 }
 
