@@ -171,7 +171,7 @@ class HardSteps(TestCase):
         self.assertLess(max(history["contact_work"]), 1e-9 * max(history["elastic_energy"]))
         forces = dict(zip(history["time"], history["force.force_y"]))
         # Of cells half as large at half the step.
-        for time, right in ((0.45, 1.444e7), (0.55, 5.152e7), (0.65, 9.814e7)):
+        for time, right in ((0.45, 1.439e7), (0.55, 5.271e7), (0.65, 9.830e7)):
             found = min(forces, key=lambda at: abs(at - time))
             self.assertLess(abs(forces[found] / right - 1.0), 0.03, time)
 

@@ -41,7 +41,7 @@ struct State {
   int iterations = 0;         ///< of the contact solver in the last step
   int newton_iterations = 0;  ///< Newton iterations of the last step, with all attempts and substeps; 0 if linear
   /// Further memory of the scheme, so that a checkpoint can contain it: one value per dof, per supported dof, (d−1) per
-  /// contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
+  /// contact point, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;
   SchemeMemory memory;
 

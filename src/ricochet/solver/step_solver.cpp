@@ -83,6 +83,7 @@ class StagesStepSolver final : public StepSolver {
     stages_.at(number)->refactorize(displacement);
   }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
+    log::debug("new factors of all stages");
     if (problem_.pressure) factor_pressure_ = problem_.pressure->last();
     if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
         !go_half_way(displacement, of_contact_nodes)) {

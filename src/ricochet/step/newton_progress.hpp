@@ -48,6 +48,7 @@ class NewtonProgress {
   [[nodiscard]] double expected_iterations(double increment) const;
   [[nodiscard]] Error failure(double correction) const;
   [[nodiscard]] int iterations() const { return total_iterations_; }
+  [[nodiscard]] int renewals() const { return renewals_; }
 
  private:
   [[nodiscard]] Advice renew_or_fail() const {

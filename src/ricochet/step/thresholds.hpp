@@ -21,6 +21,7 @@ struct NewtonThresholds {
   int max_iterations = 60;     ///< iterations with one factorization
   int helpful_renewals = 3;    ///< factorizations that slow iterations may request
   int max_renewals = 6;        ///< factorizations before a solution is given up
+  double debt_in_prices = 4.0;  ///< of a factor that is kept over steps (factor_debt.hpp)
 };
 
 /// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp).

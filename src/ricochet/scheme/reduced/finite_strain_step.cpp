@@ -40,6 +40,7 @@ void FiniteStrainStep::analyse(const SemidiscreteProblem& problem, double step) 
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
   balance_.analyse(problem, flight_->bodies());
+  couples_ = std::make_unique<ContactCouples>(problem);
   contact_right_hand_side_.resize(Index(problem.contact_dofs.size()));
   contact_cells_ = problem.internal_force_at_contact();
   lowest_rules_ = problem.internal_force->path_rules();
@@ -208,10 +209,7 @@ void FiniteStrainStep::find_residual(const SemidiscreteProblem& problem, double 
   find_imbalance(problem, step, state, residual_);
   if (!has_contact) return;
   residual_ += mean_contact_force_;
-  if (problem.contact.follows_motion()) {
-    problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
-                                          residual_);
-  }
+  couples_->add(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(), residual_);
 }
 
 /// Closes the balance of momentum and energy. Returns false if the iterations must go on.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "ricochet/linear_algebra/qr_anderson_acceleration.hpp"
+#include "ricochet/problem/contact_couples.hpp"
 #include "ricochet/problem/flight_prediction.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
@@ -54,6 +55,18 @@
 /// (1999) 1021–1045.)
 namespace ricochet {
 
+/// Thresholds of iterations with a proximal weight θ (finite_strain_tangent.hpp), which decreases with the motion of an
+/// iteration: implicit steps of a descent, of which the last ones are Newton's (pseudo-transient continuation: C. T.
+/// Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508–523).
+struct ProximalThresholds {
+  double first = 1.0;                             ///< θ of the first iteration
+  double largest_decrease = 0.3, growth = 2.0;    ///< factors of θ from one iteration to the next
+  double least = 1e-3;                            ///< θ below which it is zero
+  double least_after_failure = 0.1, retry = 4.0;  ///< θ, and its factor, after an iteration that inverts a cell or has
+                                                  ///< no solution
+  int max_iterations = 60;
+};
+
 /// Thresholds of the iterations.
 struct FiniteStrainThresholds {
   double near_solution = 1e-2;   ///< correction relative to the increment, at which changes of strains are known
@@ -63,6 +76,7 @@ struct FiniteStrainThresholds {
   int early_iterations = 30, max_early_iterations = 120;
   /// Newton iterations with the exact tangent. None of them asks for a new factor: all have their own.
   NewtonThresholds exact = {.max_iterations = 30, .max_renewals = 0};
+  ProximalThresholds proximal = {};
 };
 
 class FiniteStrainStep {
@@ -91,16 +105,24 @@ class FiniteStrainStep {
     early,  ///< after few iterations, without frozen pairs: something else can be tried
     late
   };
-  enum class NewtonStart { flight, start_of_step };
+  enum class NewtonStart {
+    flight,
+    start_of_step,
+    descent  ///< from the start of the step, with proximal weights
+  };
   [[nodiscard]] static double largest_motion(const SemidiscreteProblem& problem, const Vector& motion);
   [[nodiscard]] double rounding_of_positions(const SemidiscreteProblem& problem) const;
   void advance_with_kept_factor(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
                                 StageSolve& stages, FailureMode mode, Vector& increment);
+  void advance_with_debt(const SemidiscreteProblem& problem, ActingReaction acting, double step, State& state,
+                         StageSolve& stages, FailureMode mode, Vector& increment);
   [[nodiscard]] bool advance_exactly(const SemidiscreteProblem& problem, double step, State& state, StageSolve& stages,
                                      Vector& increment);
   void solve_exactly(const SemidiscreteProblem& problem, double step, State& state, StageSolve& stages,
                      NewtonStart from, Vector& increment);
-  Iteration iterate_exactly(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages);
+  Iteration iterate_exactly(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
+                            double proximal_weight = 0.0);
+  void descend(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages);
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state);
   void find_imbalance(const SemidiscreteProblem& problem, double step, const State& state, Vector& force);
@@ -132,6 +154,7 @@ class FiniteStrainStep {
 
   FiniteStrainThresholds thresholds_;
   std::unique_ptr<FlightPrediction> flight_;
+  std::unique_ptr<ContactCouples> couples_;
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes alone
   PathRules lowest_rules_, path_rules_;                 ///< of D, the latter fixed while the equations are solved
   int raises_ = 0;                                      ///< possible ones so far in this step: near and at its solution

@@ -22,6 +22,8 @@ void FiniteStrainTangent::analyse(const SemidiscreteProblem& problem) {
   path_of_end_ = motions([&](std::size_t k, bool contact) { return Motion(end_equation_[k], contact ? 2.0 : 0.0); });
   end_ = motions(
       [&](std::size_t k, bool contact) { return contact ? Motion(end_equation_[k], 1.0) : Motion(equation_[k], 2.0); });
+  own_ = motions([&](std::size_t k, bool) { return Motion(equation_[k], equation_[k] >= 0 ? 1.0 : 0.0); });
+  own_at_end_ = motions([&](std::size_t k, bool contact) { return Motion(end_equation_[k], contact ? 1.0 : 0.0); });
   known_.assign(dofs, 0.0);
 }
 
@@ -64,6 +66,12 @@ void FiniteStrainTangent::add_forces(const StepIterate& at) {
   add(at_end != nullptr ? at_end->step_tangent(at.end, at.step) : at.contact_cells->tangent(at.end), 1.0, end_equation_,
       end_);
   if (problem.pressure) add(problem.pressure->stiffness(at.end), 1.0, end_equation_, end_);
+}
+
+void FiniteStrainTangent::add_proximal_terms(const SemidiscreteProblem& problem, double weight) {
+  if (undeformed_.rows() == 0) undeformed_ = problem.internal_force->tangent(Vector::Zero(problem.dof_count()));
+  add(undeformed_, weight, equation_, own_);
+  add(undeformed_, weight, end_equation_, own_at_end_);
 }
 
 /// Rows of reactions as forces in both sets of equations.
@@ -119,7 +127,8 @@ void FiniteStrainTangent::add_contact(const StepIterate& at, const Reactions& re
   if (has_friction) tangent.tangential_motion = motions_of(contact_.slip(), tangent.slip);
 }
 
-void FiniteStrainTangent::assemble(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent) {
+void FiniteStrainTangent::assemble(const StepIterate& at, const Reactions& reactions, double proximal_weight,
+                                   ExactTangent& tangent) {
   const SemidiscreteProblem& problem = at.problem;
   entries_.clear();
   right_.setZero(count_);
@@ -130,6 +139,7 @@ void FiniteStrainTangent::assemble(const StepIterate& at, const Reactions& react
   for (Index i = 0; i < problem.supports.size(); ++i)
     known_[std::size_t(problem.supports.dofs()[std::size_t(i)])] = at.stage.right_hand_side.prescribed[i];
   add_forces(at);
+  if (proximal_weight > 0.0) add_proximal_terms(problem, proximal_weight);
   if (problem.has_contact_dofs()) add_contact(at, reactions, tangent);
   tangent.matrix.resize(count_, count_);
   tangent.matrix.setFromTriplets(entries_.begin(), entries_.end());

@@ -15,7 +15,8 @@
 /// InternalForce::path_tangent()
 ///   J = [ 4/h² M + 2/h C + ∂D/∂x ± 2 ∂D/∂Δ̂,  2 ∂D/∂Δ̂ − ∂(Hᵀρ)/∂u₁ ;  2 K_cf,  K_cc − ∂(Hᵀρ)/∂u₁ ],   K = f'(u₁),
 /// with + on the columns of other dofs and − on those of contact dofs, and with −∂P/∂x of loads that follow the
-/// surface.
+/// surface. A proximal weight θ adds θ K₀ to both diagonal blocks, K₀ = f'(0): iterations then move to the solution as
+/// a descent in the metric of the undeformed body does, by implicit steps of length 1/θ.
 namespace ricochet {
 
 /// Present iterate of a step.
@@ -41,8 +42,8 @@ class FiniteStrainTangent {
  public:
   /// Numbers the unknowns of a problem.
   void analyse(const SemidiscreteProblem& problem);
-  /// Linearizes the equations about an iterate, with the forces of these reactions.
-  void assemble(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent);
+  /// Linearizes the equations about an iterate, with the forces of these reactions and a proximal weight θ.
+  void assemble(const StepIterate& at, const Reactions& reactions, double proximal_weight, ExactTangent& tangent);
   /// Computes the increments of x and u₁ per dof from the unknowns.
   void write_increments(const Vector& unknowns, Vector& middle, Vector& end) const;
 
@@ -52,6 +53,7 @@ class FiniteStrainTangent {
   using Triplets = std::vector<Eigen::Triplet<double>>;
   void add(const SparseMatrix& matrix, double factor, const std::vector<int>& rows, const Motions& columns);
   void add_forces(const StepIterate& at);
+  void add_proximal_terms(const SemidiscreteProblem& problem, double weight);
   void add_contact(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent);
   [[nodiscard]] SparseRowMatrix forces_of(const SparseRowMatrix& rows) const;
   [[nodiscard]] SparseRowMatrix motions_of(const SparseRowMatrix& rows, Vector& offset) const;
@@ -59,6 +61,8 @@ class FiniteStrainTangent {
   Index count_ = 0;                            ///< of unknowns
   std::vector<int> equation_, end_equation_;   ///< per dof, of x and of u₁; −1 if it has none
   Motions middle_, end_, path_, path_of_end_;  ///< motions of x, u₁, and Δ̂ by x and by u₁, per dof
+  Motions own_, own_at_end_;                   ///< those of x and u₁ by their own unknowns, per dof
+  SparseMatrix undeformed_;                    ///< K₀, once it is needed
   std::vector<double> known_;                  ///< increments of x at supports, per dof
   Triplets entries_;
   Vector right_;  ///< r

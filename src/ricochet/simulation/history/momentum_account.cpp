@@ -29,6 +29,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
     : problem_(problem),
       scheme_(scheme),
       rule_(scheme.traits().work_rule),
+      couples_(problem),
       finite_strain_(!problem.internal_force->is_linear()),
       positions_(problem.nodes) {
   if (positions_change()) displacement_before_ = state.displacement;
@@ -119,9 +120,8 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   // Before the first step no force has acted at any position.
   const LastStep last = scheme_.last_step();
   const Vector* const position_of_forces = last.has_couples_between_bodies ? last.displacement_of_forces : nullptr;
-  if (position_of_forces != nullptr && position_of_forces->size() == problem_.dof_count() &&
-      problem_.contact.follows_motion())
-    problem_.contact.geometry->add_couples(*position_of_forces, *forces.rows, normal_, tangential_, force_);
+  if (position_of_forces != nullptr && position_of_forces->size() == problem_.dof_count())
+    couples_.add(*position_of_forces, *forces.rows, normal_, tangential_, force_);
   return part_of_nodes(force_);
 }
 

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "ricochet/problem/contact_couples.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
 /// @file Balance of momentum: impulses of all forces that act on the body.
@@ -70,6 +71,7 @@ class MomentumAccount {
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;
   WorkRule rule_;
+  ContactCouples couples_;
   double arm_ = 0.0;
   bool finite_strain_;
   Points positions_;  ///< of the nodes, about which moments are computed

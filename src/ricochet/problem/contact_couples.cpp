@@ -1,0 +1,44 @@
+#include "ricochet/problem/contact_couples.hpp"
+
+#include "ricochet/problem/body_rotations.hpp"
+
+namespace ricochet {
+
+ContactCouples::ContactCouples(const SemidiscreteProblem& problem) : problem_(problem) {
+  is_held_.assign(std::size_t(problem.nodes.cols()), 0);
+  if (!problem.contact.follows_motion() || problem.supports.size() == 0) return;
+  const BodyRotations bodies(problem);
+  std::vector<char> has_support(bodies.count(), 0);
+  for (const Index dof : problem.supports.dofs()) {
+    const int body = bodies.body_of_node(dof / problem.dimension);
+    if (body >= 0) has_support[std::size_t(body)] = 1;
+  }
+  for (std::size_t node = 0; node < is_held_.size(); ++node) {
+    const int body = bodies.body_of_node(Index(node));
+    if (body >= 0) is_held_[node] = has_support[std::size_t(body)];
+  }
+}
+
+bool ContactCouples::is_held(const ContactRows& rows, Index point) const {
+  bool result = false;
+  rows.visit_normal(point, [&](Index dof, double value) {
+    result = result || (value != 0.0 && is_held_[std::size_t(dof / problem_.dimension)] != 0);
+  });
+  return result;
+}
+
+void ContactCouples::add(const Vector& displacement, const ContactRows& rows, const Vector& normal,
+                         const Vector& tangential, Vector& force) {
+  if (!problem_.contact.follows_motion()) return;
+  const Index tangents = problem_.dimension - 1;
+  normal_ = normal;
+  tangential_ = tangential;
+  for (Index point = 0; point < normal_.size(); ++point) {
+    if (!problem_.contact.between_bodies(point) || !is_held(rows, point)) continue;
+    normal_[point] = 0.0;
+    if (tangential_.size() > 0) tangential_.segment(point * tangents, tangents).setZero();
+  }
+  problem_.contact.geometry->add_couples(displacement, rows, normal_, tangential_, force);
+}
+
+}  // namespace ricochet
