@@ -6,7 +6,8 @@ namespace ricochet {
 
 ContactCouples::ContactCouples(const SemidiscreteProblem& problem) : problem_(problem) {
   is_held_.assign(std::size_t(problem.nodes.cols()), 0);
-  if (!problem.contact.follows_motion() || problem.supports.size() == 0) return;
+  // Bodies that touch each other are not divided among ranks.
+  if (problem.ranks->are_several() || !problem.contact.follows_motion() || problem.supports.size() == 0) return;
   const BodyRotations bodies(problem);
   std::vector<char> has_support(bodies.count(), 0);
   for (const Index dof : problem.supports.dofs()) {
