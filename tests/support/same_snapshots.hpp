@@ -4,12 +4,23 @@
 
 #include <cstring>
 
+#include <string>
+
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/simulation/simulation.hpp"
 
 /// @file Checkpoints that are equal to the bit.
 namespace ricochet::test_support {
 
-inline void expect_same(const Snapshot& expected, const Snapshot& found) {
+[[nodiscard]] inline Snapshot snapshot_of(Simulation& simulation) {
+  Snapshot snapshot;
+  simulation.save(snapshot);
+  return snapshot;
+}
+
+/// `trace`: what is compared, for the failures.
+inline void expect_same(const Snapshot& expected, const Snapshot& found, const std::string& trace = {}) {
+  SCOPED_TRACE(trace);
   ASSERT_EQ(expected.values().size(), found.values().size());
   for (const auto& [name, value] : expected.values()) {
     ASSERT_TRUE(found.has(name)) << name;

@@ -43,12 +43,6 @@ std::size_t condensed_dofs(const Snapshot& snapshot) {
   return most;
 }
 
-Snapshot snapshot_of(Simulation& simulation) {
-  Snapshot snapshot;
-  simulation.save(snapshot);
-  return snapshot;
-}
-
 TEST(LongSlide, CondensesContactOnTheDofsThatPointsReachAndResumesWithTheSameBits) {
   CaseRun run(drawn_block());
   std::vector<Snapshot> snapshots;

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 
@@ -9,6 +8,7 @@
 #include "ricochet/case/names.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "support/case_run.hpp"
+#include "support/same_snapshots.hpp"
 #include "support/thrown_body.hpp"
 
 // A simulation resumed from a snapshot gives the same bits as an uninterrupted one: for every registered scheme, mass
@@ -21,34 +21,10 @@ namespace resume_test {
 
 using test_support::CaseRun;
 using test_support::dragged_case;
+using test_support::expect_same;
+using test_support::snapshot_of;
 using test_support::thrown_bodies;
 using test_support::ThrownBody;
-
-bool same_bits(const Vector& a, const Vector& b) {
-  if (a.size() != b.size()) return false;
-  // An empty vector has no address that memcmp accepts.
-  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
-}
-
-void expect_same(const Snapshot& expected, const Snapshot& found, const std::string& trace) {
-  ASSERT_EQ(expected.values().size(), found.values().size()) << trace;
-  for (const auto& [name, value] : expected.values()) {
-    ASSERT_TRUE(found.has(name)) << trace << ": " << name;
-    const Snapshot::Value& other = found.values().at(name);
-    ASSERT_EQ(value.index(), other.index()) << trace << ": " << name;
-    if (const auto* reals = std::get_if<Vector>(&value)) {
-      EXPECT_TRUE(same_bits(*reals, std::get<Vector>(other))) << trace << ": " << name;
-    } else {
-      EXPECT_TRUE(value == other) << trace << ": " << name;
-    }
-  }
-}
-
-Snapshot snapshot_of(Simulation& simulation) {
-  Snapshot snapshot;
-  simulation.save(snapshot);
-  return snapshot;
-}
 
 /// Runs a case with snapshots and resumes from each of them. Returns false if the program refuses such a case.
 bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at) {

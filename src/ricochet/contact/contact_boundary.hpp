@@ -130,6 +130,9 @@ struct ContactBoundary {
   [[nodiscard]] bool has_friction() const {
     return has_friction_elsewhere || (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
   }
+  [[nodiscard]] bool has_friction(Index point) const {
+    return friction_coefficient[point] > 0.0 || friction_bound[point] > 0.0;
+  }
   [[nodiscard]] bool follows_motion() const { return geometry != nullptr; }
   [[nodiscard]] bool follows_motion(Index point) const {
     return !rows_follow.empty() && rows_follow[std::size_t(point)] != 0;

@@ -21,6 +21,7 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
       for (int k = 0; k < d; ++k) supported[std::size_t(k)] |= problem.supports.contains(node * d + k);
     }
     const auto count = std::ranges::count(supported, true);
+    body.is_held = count > 0;
     if (count == 1 && d == 3) body.axis = int(std::ranges::find(supported, true) - supported.begin());
     for (const Index node : members) body_of_node_[std::size_t(node)] = int(bodies_.size());
     if (!problem.axisymmetric && (count == 0 || body.axis >= 0)) {

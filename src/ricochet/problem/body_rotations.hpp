@@ -20,6 +20,8 @@ class BodyRotations {
   [[nodiscard]] std::size_t count() const { return bodies_.size(); }
   /// Body of a node; −1 for tied nodes and for nodes of rigid bodies.
   [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[std::size_t(node)]; }
+  /// Whether some support acts on a body.
+  [[nodiscard]] bool is_held(int body) const { return bodies_[std::size_t(body)].is_held; }
   [[nodiscard]] bool rotates(int body) const { return !bodies_[std::size_t(body)].fitted.empty(); }
   /// Axis of rotation of a body, 2 in 2D; −1 if free to rotate about any axis.
   [[nodiscard]] int axis(int body) const { return problem_.dimension == 2 ? 2 : bodies_[std::size_t(body)].axis; }
@@ -33,6 +35,7 @@ class BodyRotations {
   struct Body {
     std::vector<Index> fitted;  ///< nodes in the fit; none if the body does not rotate
     int axis = -1;              ///< of rotation; −1 if any
+    bool is_held = false;       ///< by some support
   };
   template <int d>
   [[nodiscard]] Tensor fit_body(const Body& body, const Vector& displacement) const;

@@ -9,14 +9,9 @@ ContactCouples::ContactCouples(const SemidiscreteProblem& problem) : problem_(pr
   // Bodies that touch each other are not divided among ranks.
   if (problem.ranks->are_several() || !problem.contact.follows_motion() || problem.supports.size() == 0) return;
   const BodyRotations bodies(problem);
-  std::vector<char> has_support(bodies.count(), 0);
-  for (const Index dof : problem.supports.dofs()) {
-    const int body = bodies.body_of_node(dof / problem.dimension);
-    if (body >= 0) has_support[std::size_t(body)] = 1;
-  }
   for (std::size_t node = 0; node < is_held_.size(); ++node) {
     const int body = bodies.body_of_node(Index(node));
-    if (body >= 0) is_held_[node] = has_support[std::size_t(body)];
+    if (body >= 0 && bodies.is_held(body)) is_held_[node] = 1;
   }
 }
 

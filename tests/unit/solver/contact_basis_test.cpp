@@ -104,6 +104,7 @@ TEST_F(ContactBasisTest, CountsDofsThatNoRowUsesAnyMore) {
   basis.clear();
   EXPECT_FALSE(basis.any_follows());
   EXPECT_EQ(basis.size(), 0);
+  EXPECT_EQ(basis.unused_dofs(), 0) << "candidates that do not follow the motion need no D";
 }
 
 }  // namespace

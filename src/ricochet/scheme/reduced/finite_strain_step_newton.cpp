@@ -88,8 +88,8 @@ FiniteStrainStep::Iteration FiniteStrainStep::iterate_exactly(const Semidiscrete
   return iteration;
 }
 
-/// Approaches the solution until Newton's method can take over. An iteration that inverts a cell or has no solution is
-/// taken back. Throws Error(not_converged).
+/// Approaches the solution until Newton's method can take over. An iteration that inverts a cell is halved, and taken
+/// back if that does not help; so is one that has no solution. Throws Error(not_converged).
 void FiniteStrainStep::descend(const SemidiscreteProblem& problem, double step, const State& state,
                                StageSolve& stages) {
   const ProximalThresholds& limits = thresholds_.proximal;

@@ -77,7 +77,7 @@ class StaticFriction {
     const double size = extent(problem.nodes);
     for (Index i = 0; i < problem.contact.size(); ++i) {
       const Vector rate = stage.conditions.slip.offset.segment(i * tangents(), tangents());
-      const bool is_rough = problem.contact.friction_coefficient[i] > 0.0 || problem.contact.friction_bound[i] > 0.0;
+      const bool is_rough = problem.contact.has_friction(i);
       if (!is_rough || rate.lpNorm<1>() <= stage.conditions.slip.rounding[i]) continue;
       slide_.segment(i * tangents(), tangents()) = (size / rate.norm()) * rate;
       sliding_[std::size_t(i)] = 1;

@@ -12,6 +12,7 @@ void ContactBasis::clear() {
   first_.clear();
   offset_.assign(1, 0);
   any_follows_ = false;
+  unused_dofs_ = 0;
 }
 
 void ContactBasis::append_candidate(Index rows, bool follows) {

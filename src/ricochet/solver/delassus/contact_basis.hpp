@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "ricochet/base/snapshot.hpp"
 #include "ricochet/base/types.hpp"
 
 /// @file Rows H of contact candidates in a basis that does not follow the motion: H = D E. Rows that follow the motion

@@ -31,9 +31,7 @@ DelassusProblem::DelassusProblem(const SemidiscreteProblem& problem, std::vector
 }
 
 Index DelassusProblem::rows_of(Index point) const {
-  const ContactBoundary& contact = problem_.contact;
-  const bool has_friction = contact.friction_coefficient[point] > 0.0 || contact.friction_bound[point] > 0.0;
-  return has_friction ? problem_.dimension : 1;
+  return problem_.contact.has_friction(point) ? problem_.dimension : 1;
 }
 
 void DelassusProblem::start_again_with(const std::vector<Index>& points) {

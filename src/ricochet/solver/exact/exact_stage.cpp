@@ -18,11 +18,7 @@ constexpr double stiffening = 10.0;
 
 }  // namespace
 
-Index ExactStage::rows_of(Index point) const {
-  const ContactBoundary& contact = problem_.contact;
-  const bool has_friction = contact.friction_coefficient[point] > 0.0 || contact.friction_bound[point] > 0.0;
-  return has_friction ? problem_.dimension : 1;
-}
+Index ExactStage::rows_of(Index point) const { return problem_.contact.has_friction(point) ? problem_.dimension : 1; }
 
 /// Product of a row of Y or Y_T with unknowns.
 double ExactStage::along(const ExactTangent& tangent, const Row& row, const auto& unknowns) const {
