@@ -21,7 +21,23 @@ struct NewtonThresholds {
   int max_iterations = 60;     ///< iterations with one factorization
   int helpful_renewals = 3;    ///< factorizations that slow iterations may request
   int max_renewals = 6;        ///< factorizations before a solution is given up
-  double debt_in_prices = 4.0;  ///< of a factor that is kept over steps (factor_debt.hpp)
+  double debt_in_prices = 4.0;   ///< of a factor that is kept over steps (factor_debt.hpp)
+  double near_solution = 1e-2;   ///< correction, relative to the increment, at which equations may be refined
+  int max_pair_iterations = 80;  ///< iterations after which pairs of facets that keep changing are frozen
+  /// Iterations after which brief ones are given up unless fewer are expected to be left, and in any case.
+  int early_iterations = 30, max_early_iterations = 120;
+};
+
+/// Thresholds of iterations with a proximal weight θ (contact_newton.hpp), which decreases with the motion of an
+/// iteration: implicit steps of a descent, of which the last ones are Newton's (pseudo-transient continuation: C. T.
+/// Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508–523).
+struct ProximalThresholds {
+  double first = 1.0;                             ///< θ of the first iteration
+  double largest_decrease = 0.3, growth = 2.0;    ///< factors of θ from one iteration to the next
+  double least = 1e-3;                            ///< θ below which it is zero
+  double least_after_failure = 0.1, retry = 4.0;  ///< θ, and its factor, after an iteration that inverts a cell or has
+                                                  ///< no solution
+  int max_iterations = 60;
 };
 
 /// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp).

@@ -39,7 +39,7 @@ class EndContactScheme : public Scheme {
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     if (finite_strain_step_) {
-      finite_strain_step_->advance(problem, acting_of(problem), step(), state, stages, increment);
+      finite_strain_step_->advance({problem, acting_of(problem), step(), state, stages}, increment);
     } else {
       massless_step_.advance(problem, acting_of(problem), state, stages, increment);
     }
