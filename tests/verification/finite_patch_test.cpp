@@ -206,7 +206,9 @@ TEST_P(Homogeneous, SqueezedAgainstAPlane) {
     const std::string mesh = mesh_of(kind, distortion);
     for (const std::string multipliers : {"nodal", "p0", "p1", "dual"}) {
       for (const std::string by : {"top", "sides", "load"}) {
-        const double pressure = by == "sides" ? 0.3 : 0.0, height = by == "top" ? 0.7 : 0.85;
+        // Constant multipliers leave a squeezed surface of degree 2 free to buckle within its facets.
+        const bool is_squeezed_hard = by == "top" && multipliers != "p0";
+        const double pressure = by == "sides" ? 0.3 : 0.0, height = is_squeezed_hard ? 0.7 : 0.85;
         const Squeezed exact(height, up, pressure);
         Eigen::Matrix3d gradient = (exact.across - 1.0) * Eigen::Matrix3d::Identity();
         gradient(up, up) = height - 1.0;

@@ -218,4 +218,76 @@ TEST(FiniteStatics, SaysHowFarItCame) {
   });
 }
 
+constexpr double width = 0.02, euler = M_PI * M_PI * 1e6 * width * width * width / 12.0 / 4.0;
+
+/// A cantilever column of length 1 under a dead load on top.
+CaseRun column(const std::string& law, double load, const std::string& more = "") {
+  const std::string mesh = mesh_geometry("column",
+                                         "Rectangle(1) = {0, 0, 0, 0.02, 1};\nPhysical Surface(\"body\") = {1};\n"
+                                         "Physical Curve(\"y0\") = {1};\nPhysical Curve(\"x1\") = {2};\n"
+                                         "Physical Curve(\"y1\") = {3};\n",
+                                         0.05, 2);
+  return CaseRun(body(mesh, "law = \"" + law + "\"\nyoung = 1e6\npoisson = 0.0\n",
+                      support("y0", "x", 0.0) + support("y0", "y", 0.0), "degree = 2\nplane = \"strain\"\n") +
+                 fmt::format("[[traction]]\ngroup = \"y1\"\nvalue = [0.0, {:.17g}]\n", -load / width) + more);
+}
+
+/// Displacement of the middle of its upper side.
+Eigen::Vector2d top_of(const CaseRun& run) {
+  Index top = 0;
+  const Vector middle = (Vector(2) << 0.5 * width, 1.0).finished();
+  (run.problem().nodes.colwise() - middle).colwise().norm().minCoeff(&top);
+  return run.state().displacement.segment<2>(2 * top);
+}
+
+/// Below Euler's load the column remains straight, beyond it the straight equilibrium is unstable, and the start is the
+/// elastica with the angle α at the top: P/P₁ = (2K/π)², deflection 2k/K, height 2E/K − 1, k = sin(α/2).
+TEST(FiniteStatics, ColumnsBuckleAtEulersLoad) {
+  for (const std::string law : {"saint-venant-kirchhoff", "neo-hookean"}) {
+    EXPECT_LT(std::abs(top_of(column(law, 0.97 * euler))[0]), 1e-4) << law;
+    for (const double angle : {0.35, 1.05, 1.6}) {
+      const double modulus = std::sin(0.5 * angle), k = std::comp_ellint_1(modulus), e = std::comp_ellint_2(modulus);
+      const Eigen::Vector2d top = top_of(column(law, euler * std::pow(2.0 * k / M_PI, 2)));
+      EXPECT_NEAR(std::abs(top[0]), 2.0 * modulus / k, 8e-3) << law << angle;
+      EXPECT_NEAR(1.0 + top[1], 2.0 * e / k - 1.0, 8e-3) << law << angle;
+    }
+  }
+}
+
+/// A wall beside the column catches it: the same check of stability, with contact.
+TEST(FiniteStatics, ColumnsBuckleOntoAWall) {
+  const CaseRun run = column("saint-venant-kirchhoff", 1.3 * euler,
+                             "[obstacle.wall]\ntype = \"plane\"\npoint = [0.15, 0]\nnormal = [-1, 0]\n[[contact]]\n"
+                             "group = \"x1\"\nobstacle = \"wall\"\n[obstacle.other]\ntype = \"plane\"\npoint = "
+                             "[-0.1, 0]\nnormal = [1, 0]\n[[contact]]\ngroup = \"x1\"\nobstacle = \"other\"\n");
+  EXPECT_GT(run.state().forces.normal_reaction.maxCoeff(), 0.0);
+  EXPECT_GT(std::abs(top_of(run)[0]), 0.05);
+  EXPECT_LT(std::abs(top_of(run)[0]), 0.16);
+}
+
+/// A rubber disc in a gap that is lower by a fifth of its diameter: contact with friction alone holds it, and it stays
+/// where it starts.
+TEST(FiniteStatics, RubberIsSqueezedAndStays) {
+  const std::string mesh = mesh_geometry(
+      "rubber-disc",
+      "Disk(1) = {0, 0, 0, 0.5, 0.5};\nPhysical Surface(\"body\") = {1};\nPhysical Curve(\"skin\") = {1};\n", 0.12, 2);
+  for (const double friction : {0.1, 0.6}) {
+    std::string text =
+        body(mesh, "law = \"neo-hookean\"\nyoung = 1.0\npoisson = 0.45\n", "", "degree = 2\nplane = \"strain\"\n");
+    for (const auto& [name, side] : {std::pair{"floor", -1.0}, std::pair{"lid", 1.0}})
+      text += fmt::format(
+          "[obstacle.{0}]\ntype = \"plane\"\npoint = [0, {1}]\nnormal = [0, {2}]\n[[contact]]\ngroup = \"skin\"\n"
+          "obstacle = \"{0}\"\nfriction = {3}\n",
+          name, 0.4 * side, -side, friction);
+    CaseRun run(text);
+    const auto& forces = run.state().forces;
+    Vector force = Vector::Zero(run.problem().dof_count());
+    forces.rows->add_force(forces.normal_reaction, forces.tangential_reaction, force);
+    EXPECT_GT(force.cwiseMax(0.0).sum(), 0.05);
+    EXPECT_NEAR(force.reshaped(2, force.size() / 2).row(1).sum(), 0.0, 1e-10);
+    EXPECT_LT(run.state().displacement.head<2>().norm(), 0.3);
+    run.run([&] { EXPECT_LT(run.simulation().account().energies(run.state()).kinetic, 1e-16); });
+  }
+}
+
 }  // namespace ricochet::test_support::finite_statics_test

@@ -9,13 +9,14 @@ namespace ricochet {
 
 void StageNewton::store_stage(const Stage& stage) {
   linearization_ = stage.linearization;
-  evaluate(linearization_.displacement, force_at_base_);
+  find_force(linearization_.displacement, force_at_base_);
   right_hand_side_ = stage.right_hand_side;
   conditions_ = stage.conditions;
   motion_ = stage.motion;
 }
 
-void StageNewton::evaluate(const Vector& displacement, Vector& force) {
+/// Computes f less the follower loads.
+void StageNewton::find_force(const Vector& displacement, Vector& force) {
   problem_.internal_force->evaluate(displacement, force);
   if (!problem_.pressure) return;
   follower_load_.setZero(force.size());
@@ -23,29 +24,17 @@ void StageNewton::evaluate(const Vector& displacement, Vector& force) {
   force -= follower_load_;
 }
 
-/// Updates δ by a correction, and accelerates the iterations as NewtonProgress::wants_acceleration() advises.
-void StageNewton::correct(const Vector& correction) {
-  before_ = total_;
-  total_ += correction;
-  if (progress_.wants_acceleration()) acceleration_.advance(before_, total_, total_);
+void StageNewton::evaluate() {
+  displacement_ = linearization_.displacement + task_->coefficients.stiffness * total_;
+  find_force(displacement_, force_);
 }
 
-/// Evaluates f(p + κδ). If a correction inverts a cell, half of it is taken, then half of that.
-void StageNewton::update_internal_force(double factor) {
-  for (int halving = 0;; ++halving) {
-    displacement_ = linearization_.displacement + factor * total_;
-    try {
-      evaluate(displacement_, force_);
-      return;
-    } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::not_converged || halving == max_halvings) throw;
-    }
-    total_ = 0.5 * (total_ + before_);
-  }
-}
+bool StageNewton::freeze() { return problem_.contact.follows_motion() && problem_.contact.geometry->freeze(); }
 
 /// Sets the stage for a correction of δ = total.
-void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
+void StageNewton::linearize() {
+  const OperatorCoefficients& coefficients = task_->coefficients;
+  Stage& stage = *stage_;
   problem_.mass.multiply(total_, inertial_force_);
   stage.right_hand_side.force =
       right_hand_side_.force - coefficients.mass * inertial_force_ - (force_ - force_at_base_);
@@ -69,48 +58,37 @@ void StageNewton::linearize(const OperatorCoefficients& coefficients, Stage& sta
   stage.conditions.slip.offset = conditions_.slip.offset + stage.conditions.slip.factor * stage.conditions.slip.offset;
 }
 
-void StageNewton::solve(const OperatorCoefficients& coefficients, double renewal_price, const SolveLinear& solve_linear,
-                        const Renew& renew, Stage& stage, StageSolution& solution) {
-  store_stage(stage);
-  total_.setZero(problem_.dof_count());
-  const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.displacement.lpNorm<Eigen::Infinity>();
-  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size, renewal_price);
-  acceleration_.restart();
+NewtonEquations::Iteration StageNewton::iterate() {
+  linearize();
+  task_->solve_linear(*stage_, *solution_);
+  contact_iterations_ += solution_->iterations;
   before_ = total_;
-  int iterations = 0;
-  while (true) {
-    const bool was_frozen = has_frozen_rows();
-    solve_linear(stage, solution);
-    if (has_frozen_rows() != was_frozen) acceleration_.restart();  // corrections are those of another map from now on
-    iterations += solution.iterations;
-    const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
-                                                             : std::numeric_limits<double>::infinity();
-    const NewtonProgress::Advice advice =
-        progress_.assess(correction, (total_ + solution.increment).lpNorm<Eigen::Infinity>());
-    if (advice == NewtonProgress::Advice::done) {
-      total_ += solution.increment;
-      break;
-    }
-    if (advice == NewtonProgress::Advice::failed) throw progress_.failure(correction);
-    if (std::isfinite(correction)) correct(solution.increment);
-    update_internal_force(coefficients.stiffness);
-    if (advice == NewtonProgress::Advice::renew) {
-      renew(displacement_);
-      progress_.count_renewal();
-      progress_.restart();
-      acceleration_.restart();
-    }
-    linearize(coefficients, stage);
-  }
+  if (!solution_->increment.allFinite()) return {std::numeric_limits<double>::infinity(), 0.0};
+  total_ += solution_->increment;
+  return {solution_->increment.lpNorm<Eigen::Infinity>(), total_.lpNorm<Eigen::Infinity>()};
+}
+
+void StageNewton::solve(const Task& task, Stage& stage, StageSolution& solution) {
+  task_ = &task;
+  stage_ = &stage;
+  solution_ = &solution;
+  contact_iterations_ = 0;
+  if (task.debt.is_due(task.renewal_price)) task.renew(stage.linearization.displacement);
+  store_stage(stage);
+  force_ = force_at_base_;
+  before_ = total_.setZero(problem_.dof_count());
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + linearization_.displacement.lpNorm<Eigen::Infinity>();
+  newton_.solve(*this, {4.0 * std::numeric_limits<double>::epsilon() * size, task.renewal_price}, Persistence::full);
   solution.increment = total_;
   if (problem_.pressure) {
-    displacement_ = linearization_.displacement + coefficients.stiffness * total_;
+    displacement_ = linearization_.displacement + task.coefficients.stiffness * total_;
     solution.follower_load.setZero(total_.size());
     problem_.pressure->add_force(displacement_, linearization_.load_time, solution.follower_load,
                                  linearization_.load_part);
   }
-  solution.iterations = iterations;
-  solution.newton_iterations = progress_.iterations();
+  solution.iterations = contact_iterations_;
+  solution.newton_iterations = newton_.progress().iterations();
+  if ((solution.normal_reaction.array() > 0.0).any()) task.debt.add_step(solution.newton_iterations);
 }
 
 }  // namespace ricochet

@@ -47,7 +47,8 @@ class StagesStepSolver final : public StepSolver {
         operators_(operators),
         shared_{.all_points = options.all_points},
         tangent_iterations_(problem),
-        newton_(problem) {
+        newton_(problem),
+        debts_(Vector::Zero(Index(operators.size()) * FactorDebt::numbers)) {
     if (!problem.internal_force->is_linear()) frame_ = std::make_unique<CorotatedFrame>(problem);
     const bool is_divided = problem.ranks->are_several();
     if (is_divided && problem.ranks->any(problem.contact.size() > 0))
@@ -64,17 +65,17 @@ class StagesStepSolver final : public StepSolver {
 
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
     StageSolver& solver = *stages_.at(number);
-    const auto solve_linear = [&](Stage& linear, StageSolution& result) {
+    const auto solve_linear = [&](const Stage& linear, StageSolution& result) {
       solver.solve(linear.linear(), result);
-      if (linear.motion) tangent_iterations_.follow_motion(solver, linear, result);
     };
     if (stage.linearization.displacement.size() > 0) {
       rotate_operators(stage.linearization.displacement);
-      newton_.solve(
-          operators_[number], renewal_price_, solve_linear,
-          [this](const Vector& displacement) { renew_operators(displacement, displacement); }, stage, solution);
+      const auto renew = [this](const Vector& displacement) { renew_operators(displacement, displacement); };
+      FactorDebt debt(debts_.segment(Index(number) * FactorDebt::numbers, FactorDebt::numbers));
+      newton_.solve({operators_[number], renewal_price_, solve_linear, renew, debt}, stage, solution);
     } else {
       solve_linear(stage, solution);
+      if (stage.motion) tangent_iterations_.follow_motion(solver, stage, solution);
       solution.newton_iterations = 1;
     }
     solver.show_contact();
@@ -84,6 +85,7 @@ class StagesStepSolver final : public StepSolver {
   }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {
     log::debug("new factors of all stages");
+    debts_.setZero();
     if (problem_.pressure) factor_pressure_ = problem_.pressure->last();
     if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
         !go_half_way(displacement, of_contact_nodes)) {
@@ -125,6 +127,8 @@ class StagesStepSolver final : public StepSolver {
     Vector made_at = factor_displacement_, contact_made_at = contact_factor_displacement_;
     visit("made_at", made_at, 0, problem_.dof_count());
     visit("contact_made_at", contact_made_at, made_at.size());
+    Vector debts = debts_;
+    visit("factor_debts", debts, debts_.size());
     FollowerPressure::Instant last;
     if (pressure != nullptr) {
       last = pressure->last();
@@ -132,6 +136,7 @@ class StagesStepSolver final : public StepSolver {
       if (visit.loads()) pressure->set_last(factor_pressure_);
     }
     if (visit.loads() && made_at.size() > 0) renew_operators(made_at, contact_made_at);
+    debts_ = debts;
     if (visit.loads() && pressure != nullptr) pressure->set_last(last);
     frame_->persist(visit.part("frame"));
   }
@@ -245,6 +250,7 @@ class StagesStepSolver final : public StepSolver {
   FollowerPressure::Instant factor_pressure_;  ///< likewise
   TangentIterations tangent_iterations_;
   StageNewton newton_;
+  Vector debts_;                               ///< numbers of a FactorDebt per operator
   std::unique_ptr<GatheredContact> gathered_;  ///< on several ranks with contact
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;

@@ -63,6 +63,7 @@ void ContactNewton::solve(NewtonEquations& equations, const NewtonScale& scale, 
   while (true) {
     const NewtonEquations::Iteration iteration = equations.iterate();
     const Advice advice = progress_.assess(iteration.correction, iteration.increment);
+    if (advice == Advice::done && !equations.has_conditions_on_solution()) return;
     if (advice == Advice::proceed && progress_.wants_acceleration()) equations.accelerate();
     // Reactions of an increment that was halved are not its own: contact conditions hold for the whole one.
     const bool is_done = !evaluate_with_halving(equations) && advice == Advice::done;

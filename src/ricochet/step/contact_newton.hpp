@@ -32,6 +32,8 @@ class NewtonEquations {
   virtual void renew() {}
   /// Makes the equations more accurate near their solution, and at it. Returns whether they have changed.
   [[nodiscard]] virtual bool refine(bool /*is_solution*/) { return false; }
+  /// Whether forces are evaluated at the solution, and accept() is called.
+  [[nodiscard]] virtual bool has_conditions_on_solution() const { return false; }
   /// Takes the solution. Returns false if a smaller error is necessary (only if `may_refuse`). Throws
   /// Error(not_converged) if this is no solution.
   [[nodiscard]] virtual bool accept(const Iteration& /*iteration*/, bool /*may_refuse*/) { return true; }
@@ -45,7 +47,7 @@ class NewtonEquations {
   virtual void take_back() { throw std::logic_error("these equations have no descent"); }
 };
 
-/// What is done when iterations do not converge.
+/// Treatment of iterations that do not converge.
 enum class Persistence {
   brief,  ///< they are given up after few, without frozen pairs: something else can be tried
   full

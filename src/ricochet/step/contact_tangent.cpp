@@ -129,8 +129,8 @@ void ContactTangent::use_rows_at_jumps(const ContactRows& rows) {
   }
 }
 
-void ContactTangent::differentiate(const SemidiscreteProblem& problem, const StepStart& start, const Vector& end,
-                                   double time, const ContactRows& rows, const Reactions& reactions) {
+void ContactTangent::differentiate(const SemidiscreteProblem& problem, const ContactPlace& place,
+                                   const ContactRows& rows, const Reactions& reactions) {
   const Index dofs = problem.dof_count();
   store_rows(rows, dofs);
   if (!problem.contact.follows_motion()) {
@@ -147,14 +147,14 @@ void ContactTangent::differentiate(const SemidiscreteProblem& problem, const Ste
   force_entries_.clear();
   jumps_.assign(std::size_t(rows.size()), 0);
   forward_ = backward_ = rows;
-  perturbed_ = end;
+  perturbed_ = place.end;
   std::vector<int> column_of(std::size_t(rows.size()));
   const auto evaluate = [&](const std::vector<Index>& group, double way, ContactRows& result, Vector& slip) {
-    for (const Index dof : group) perturbed_[dof] = end[dof] + way;
-    geometry.update(perturbed_, time, &start, result);
-    increment_ = perturbed_ - start.displacement;
+    for (const Index dof : group) perturbed_[dof] = place.end[dof] + way;
+    geometry.update(perturbed_, place.time, place.rows_from, result);
+    increment_ = perturbed_ - place.start;
     result.tangential_motion(increment_, slip);
-    for (const Index dof : group) perturbed_[dof] = end[dof];
+    for (const Index dof : group) perturbed_[dof] = place.end[dof];
   };
   for (const std::vector<Index>& group : groups_) {
     evaluate(group, width, forward_, forward_slip_);
@@ -167,7 +167,7 @@ void ContactTangent::differentiate(const SemidiscreteProblem& problem, const Ste
     add_differences(rows, reactions, column_of, width);
   }
   use_rows_at_jumps(rows);
-  geometry.update(end, time, &start, forward_);  // what the geometry remembers is that of the end
+  geometry.update(place.end, place.time, place.rows_from, forward_);  // what the geometry remembers is that of the end
   assemble(gap_entries_, rows.size(), dofs, gap_);
   assemble(slip_entries_, rows.size() * (rows.dimension() - 1), dofs, slip_);
   assemble(force_entries_, dofs, dofs, force_);

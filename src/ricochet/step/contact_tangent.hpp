@@ -6,6 +6,15 @@
 /// @file Derivatives of contact conditions and forces with respect to displacements.
 namespace ricochet {
 
+/// Place at which contact conditions are differentiated.
+struct ContactPlace {
+  const Vector& start;  ///< u₀, from which slips are measured
+  const Vector& end;    ///< u₁
+  double time;          ///< at the end
+  /// Start of the step of which the rows are; null: the rows are those of u₁ alone.
+  const StepStart* rows_from = nullptr;
+};
+
 /// Derivatives at the end u₁ of a step from u₀, for rows H = [G; B_T] of the step. Against planes they are the rows.
 /// Else they are central differences of what ContactGeometry computes, with the error of their width squared: 10⁻¹⁰ for
 /// surfaces that bend over the size of the model, and larger for smaller radii. Displacements are perturbed in groups
@@ -13,9 +22,9 @@ namespace ricochet {
 /// whose gap jumps, because they begin to face something, the derivatives are the rows.
 class ContactTangent {
  public:
-  /// Differentiates at `end`, to which `rows` belong. `reactions`: those of which the force is differentiated.
-  void differentiate(const SemidiscreteProblem& problem, const StepStart& start, const Vector& end, double time,
-                     const ContactRows& rows, const Reactions& reactions);
+  /// Differentiates at a place, to which `rows` belong. `reactions`: those of which the force is differentiated.
+  void differentiate(const SemidiscreteProblem& problem, const ContactPlace& place, const ContactRows& rows,
+                     const Reactions& reactions);
 
   /// G and B_T of the rows.
   [[nodiscard]] const SparseRowMatrix& normal_rows() const { return normal_rows_; }

@@ -16,7 +16,7 @@ namespace ricochet {
 class FactorDebt {
  public:
   /// Keeps a reference to its numbers, which belong to the state of a run; at first they are zero.
-  explicit FactorDebt(Vector& memory) : memory_(memory) {}
+  explicit FactorDebt(Eigen::Ref<Vector> memory) : memory_(memory) {}
   static constexpr Index numbers = 2;
 
   /// `price`: number of iterations that take as long as a new factor.
@@ -29,7 +29,7 @@ class FactorDebt {
   }
 
  private:
-  Vector& memory_;
+  Eigen::Ref<Vector> memory_;
 };
 
 }  // namespace ricochet

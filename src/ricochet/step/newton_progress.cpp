@@ -53,8 +53,8 @@ NewtonProgress::Advice NewtonProgress::assess(double correction, double incremen
   growing_ = rate > 1.0 ? growing_ + 1 : 0;
   least_ = std::min(least_, correction);
   const bool diverges = correction > thresholds_.divergence * least_;
-  accelerates_ =
-      accelerates_ || growing_ >= thresholds_.max_growing || (slow_ >= thresholds_.max_slow && renewals_ > 0);
+  accelerates_ = accelerates_ || growing_ >= thresholds_.max_growing ||
+                 (slow_ >= thresholds_.max_slow && renewals_ > 0) || total_iterations_ > thresholds_.plain_iterations;
   if (renewal_pays(increment) || diverges || iterations_ >= thresholds_.max_iterations) return renew_or_fail();
   return Advice::proceed;
 }

@@ -89,8 +89,9 @@ TEST(ContactTangent, IsTheDerivativeOfGapsSlipsAndForces) {
     const StepOnSurface step(toml);
     const SemidiscreteProblem& problem = step.run.problem();
     ContactTangent tangent;
+    const StepStart from{step.start, 0.0};
     const ContactRows rows = step.rows(step.end);
-    tangent.differentiate(problem, {step.start, 0.0}, step.end, 0.0, rows, step.reactions);
+    tangent.differentiate(problem, {step.start, step.end, 0.0, &from}, rows, step.reactions);
     const Vector direction = some_motion(problem, 3, 1.0);
     constexpr double width = 1e-5;
     const Vector after = step.end + width * direction, before = step.end - width * direction;
@@ -120,8 +121,9 @@ TEST(ContactTangent, OfPlanesIsTheRows) {
                                    "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\n"
                                    "group = \"lower.y0\"\nobstacle = \"floor\"\nfriction = 0.1\n"));
   ContactTangent tangent;
+  const StepStart from{step.start, 0.0};
   const ContactRows& rows = *step.run.problem().contact.rows;
-  tangent.differentiate(step.run.problem(), {step.start, 0.0}, step.end, 0.0, rows, step.reactions);
+  tangent.differentiate(step.run.problem(), {step.start, step.end, 0.0, &from}, rows, step.reactions);
   EXPECT_EQ(Matrix(tangent.gap()), Matrix(rows.gap_operator));
   EXPECT_EQ(Matrix(tangent.slip()), Matrix(rows.tangential_trace));
   EXPECT_EQ(tangent.force().nonZeros(), 0);

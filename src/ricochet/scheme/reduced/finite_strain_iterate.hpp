@@ -107,13 +107,14 @@ class FiniteStrainIterate {
   Vector motion_;  ///< of an iteration, to be measured
 };
 
-/// What iterations of these equations have in common.
+/// Common part of the iterations of these equations.
 class FiniteStrainEquations : public NewtonEquations {
  public:
   explicit FiniteStrainEquations(FiniteStrainIterate& iterate) : iterate_(iterate) {}
   void evaluate() override { iterate_.evaluate(); }
   void halve() override { iterate_.halve(); }
   [[nodiscard]] bool refine(bool is_solution) override { return iterate_.raise_rules(is_solution); }
+  [[nodiscard]] bool has_conditions_on_solution() const override { return true; }
   [[nodiscard]] bool accept(const Iteration& iteration, bool may_refuse) override {
     return iterate_.close_balance(solution(), iteration.correction, may_refuse);
   }

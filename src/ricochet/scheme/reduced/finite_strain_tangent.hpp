@@ -1,12 +1,9 @@
 #pragma once
 
-#include <utility>
-#include <vector>
-
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/state.hpp"
 #include "ricochet/step/contact_tangent.hpp"
-#include "ricochet/step/exact_tangent.hpp"
+#include "ricochet/step/tangent_assembly.hpp"
 
 /// @file Exact tangent of the step of finite_strain_step.hpp.
 ///
@@ -48,24 +45,18 @@ class FiniteStrainTangent {
   void write_increments(const Vector& unknowns, Vector& middle, Vector& end) const;
 
  private:
-  /// A motion of a dof: this factor times this unknown, or times its known value if the unknown is −1.
-  using Motions = std::vector<std::pair<int, double>>;
-  using Triplets = std::vector<Eigen::Triplet<double>>;
-  void add(const SparseMatrix& matrix, double factor, const std::vector<int>& rows, const Motions& columns);
+  using Equations = TangentAssembly::Equations;
+  using Motions = TangentAssembly::Motions;
   void add_forces(const StepIterate& at);
   void add_proximal_terms(const SemidiscreteProblem& problem, double weight);
   void add_contact(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent);
-  [[nodiscard]] SparseRowMatrix forces_of(const SparseRowMatrix& rows) const;
-  [[nodiscard]] SparseRowMatrix motions_of(const SparseRowMatrix& rows, Vector& offset) const;
 
   Index count_ = 0;                            ///< of unknowns
-  std::vector<int> equation_, end_equation_;   ///< per dof, of x and of u₁; −1 if it has none
-  Motions middle_, end_, path_, path_of_end_;  ///< motions of x, u₁, and Δ̂ by x and by u₁, per dof
-  Motions own_, own_at_end_;                   ///< those of x and u₁ by their own unknowns, per dof
+  Equations equation_, end_equation_;          ///< of x and of u₁
+  Motions middle_, end_, path_, path_of_end_;  ///< motions of x, u₁, and Δ̂ by x and by u₁
+  Motions own_, own_at_end_;                   ///< those of x and u₁ by their own unknowns
   SparseMatrix undeformed_;                    ///< K₀, once it is needed
-  std::vector<double> known_;                  ///< increments of x at supports, per dof
-  Triplets entries_;
-  Vector right_;  ///< r
+  TangentAssembly assembly_;
   ContactTangent contact_;
 };
 

@@ -5,7 +5,7 @@
 #include "ricochet/linear_algebra/qr_anderson_acceleration.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
-#include "ricochet/step/newton_progress.hpp"
+#include "ricochet/step/contact_newton.hpp"
 #include "ricochet/step/stage_solve.hpp"
 
 /// @file Contact nodes without inertia in an explicit step for an internal force f = ∂W/∂u that is nonlinear in the
@@ -18,7 +18,7 @@
 /// nodes reach with the velocity of the last step.
 namespace ricochet {
 
-class NonlinearContactEquilibrium {
+class NonlinearContactEquilibrium : private NewtonEquations {
  public:
   void analyse(const SemidiscreteProblem& problem);
   void start(State& state) const;
@@ -32,20 +32,32 @@ class NonlinearContactEquilibrium {
   void renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages);
 
  private:
-  void require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
-               const Vector& increment, const Vector& end, Stage& stage);
-  void evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment, Vector& end);
-  void move_to(const SemidiscreteProblem& problem, const State& state, const Vector& contact_increment,
-               Vector& increment, Vector& end);
+  struct Task {
+    const SemidiscreteProblem& problem;
+    const State& state;
+    const Vector& load;
+    double step;
+    StageSolve& stages;
+    Vector &increment, &end;
+  };
+  Iteration iterate() override;
+  void accelerate() override { acceleration_.advance(last_point_, point_, point_); }
+  void forget_iterates() override { acceleration_.restart(); }
+  void evaluate() override;
+  void halve() override { point_ = 0.5 * (point_ + last_point_); }
+  void renew() override { task_->stages.renew_operators(task_->end, task_->end); }
+  void require(Stage& stage);
+  void move_to_point();
 
   std::shared_ptr<const InternalForce> contact_cells_;  ///< of the cells at contact nodes
   double reach_ = 0.0;                                  ///< largest coordinate of the nodes
-  NewtonProgress progress_;
+  ContactNewton newton_{NewtonThresholds{.plain_iterations = 2, .stored_iterations = 6}};
   QrAndersonAcceleration acceleration_{6};
+  const Task* task_ = nullptr;
+  const StageSolution* solution_ = nullptr;
+  double last_correction_ = 0.0;
   Vector force_, middle_, rate_;
-  /// Per contact dof: increment of an iteration, with its correction, and its last change.
-  Vector point_, image_, move_;
-  bool moved_ = false;
+  Vector point_, last_point_;  ///< increments of contact dofs, after and before a correction
 };
 
 }  // namespace ricochet

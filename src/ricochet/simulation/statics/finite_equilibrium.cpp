@@ -6,145 +6,149 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/simulation/statics/held_bodies.hpp"
-#include "ricochet/simulation/statics/starting_stage.hpp"
-#include "ricochet/step/contact_conditions.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/simulation/statics/equilibrium_equations.hpp"
 
 namespace ricochet {
 
 namespace {
 
 constexpr double shortest_increment = 1e-5;
-constexpr int max_iterations = 100, most_renewals = 12;
-/// ε relative to the smallest K_ii/M_ii. Bodies that supports hold do not need it. For bodies that contact helps to
-/// hold, ε is the only resistance of the operator to the motion that supports leave free, whose rounding is that of
-/// forces over ε: with too small a value Newton's method does not settle; a larger one requires more iterations at the
-/// end.
-constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-6;
-/// Tolerated residual, relative to the largest force.
-constexpr double left_of_forces = 1e-10;
-
-double proximal_coefficient(const SemidiscreteProblem& problem) {
-  const Vector stiffness = problem.internal_force->stiffness_diagonal(), mass = problem.mass.diagonal();
-  double lowest = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < mass.size(); ++i) {
-    if (mass[i] > 0.0 && stiffness[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
-  }
-  return (all_are_fixed_by_supports(problem) ? proximal_fraction : proximal_fraction_of_unheld) * lowest;
-}
+/// Tolerance of the end of a part from which another one continues.
+constexpr double near = 1e-6;
+/// Motion along an unstable direction from which a descent begins, relative to the size of the bodies.
+constexpr double perturbation = 1e-3;
+constexpr int most_descents = 4, most_iterations = 60;
+/// Longest motion in an iteration of a descent, relative to the size of the bodies.
+constexpr double longest_motion = 0.1;
+/// Corrections that grow lead to another branch of equilibria: beyond the loads that a body can carry there may be
+/// some.
+constexpr NewtonThresholds continuous = {.divergence = 10.0, .max_renewals = 3},
+                           exact = {.divergence = 2.0, .max_iterations = 15, .max_renewals = 0};
+constexpr NewtonThresholds disturbed = {.max_iterations = 30, .max_renewals = 0};
+/// Iterations of the proximal point method may converge slowly.
+constexpr NewtonThresholds settling = {.max_iterations = 100, .max_renewals = 3};
 
 class LoadPath {
  public:
-  LoadPath(const SemidiscreteProblem& problem, const StepSolverOptions& options)
-      : problem_(problem),
-        epsilon_(proximal_coefficient(problem)),
-        size_(extent(problem.nodes)),
-        solver_(make_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}}, options)) {
-    problem.loads.total(0.0, load_);
-    problem.supports.values(0.0, supported_);
-  }
+  LoadPath(const SemidiscreteProblem& problem, const Vector& guess, const StepSolverOptions& options)
+      : iterate_(problem, guess), kept_(iterate_, options), exact_(iterate_) {}
 
-  /// Advances a displacement to the equilibrium under a fraction of loads and prescribed displacements, near enough to
-  /// continue from. Throws Error(not_converged).
-  void advance(double part, StaticEquilibrium& at) {
-    constexpr int most_corrections = 40;
-    constexpr double near = 1e-6;  // of the size of the bodies
-    constexpr double most_growth = 10.0;
-    start(at.displacement);
-    for (int k = 0; k < most_corrections; ++k) {
-      const double before = last_, correction = correct(part, at);
-      if (correction <= near) return;
-      // Beyond the loads that a body can carry corrections are erratic, also with a new factor.
-      if (correction > (may_renew() ? most_growth : 1.0) * before)
-        throw Error(ErrorKind::not_converged, "the corrections of Newton's method grow");
+  /// Advances to the equilibrium under a part of loads and prescribed displacements, near enough to continue from. The
+  /// displacement is that of the start if this fails. Throws Error(not_converged).
+  void advance(double part) {
+    const Vector start = iterate_.displacement();
+    const Reactions reactions = iterate_.reactions();
+    const auto attempt = [&](ContactNewton& newton, EquilibriumEquations& equations, double price) {
+      try {
+        iterate_.start(part);
+        iterate_.evaluate();
+        newton.solve(equations, {iterate_.rounding(), price, near}, Persistence::brief);
+      } catch (const Error&) {
+        iterate_.displacement() = start;
+        iterate_.set_reactions(reactions);
+        throw;
+      }
+    };
+    try {
+      attempt(kept_newton_, kept_, kept_.renewal_price());
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged) throw;
+      log::debug(std::string("kept factor: ") + error.what());
+      attempt(exact_newton_, exact_, std::numeric_limits<double>::infinity());
     }
-    throw Error(
-        ErrorKind::not_converged,
-        fmt::format("Newton's method did not converge in {} corrections, the last of which moved a node by {:.3g}",
-                    most_corrections, last_ * size_));
   }
 
-  /// Performs another correction under the full loads, which is an iteration of the proximal point method. Returns true
-  /// if the residual of all forces is rounding and corrections no longer shrink: rounding of a motion that only contact
-  /// restrains is amplified by 1/ε, so that the size of the smallest correction is unknown.
-  [[nodiscard]] bool settle(StaticEquilibrium& at) {
-    constexpr double rounding = 1e-13;  // of the size of the bodies
-    constexpr double stalled = 0.9;
-    const double before = last_, correction = correct(1.0, at);
-    const bool shrinks = correction > rounding && (correction <= stalled * before || may_renew());
-    return !shrinks && is_balanced(at);
+  /// Iterates under the full loads until the residual of all forces is rounding. Throws Error(not_converged).
+  void settle() {
+    const Vector start = iterate_.displacement();
+    const auto attempt = [&](ContactNewton& newton, EquilibriumEquations& equations, Persistence persistence) {
+      equations.settle();
+      iterate_.displacement() = start;  // slips remain those of the last part
+      iterate_.evaluate();
+      newton.solve(equations, {iterate_.rounding(), kept_.renewal_price()}, persistence);
+    };
+    const auto is_solved = [&](ContactNewton& newton, EquilibriumEquations& equations) {
+      try {
+        attempt(newton, equations, Persistence::brief);
+        return true;
+      } catch (const Error& error) {
+        if (error.kind() != ErrorKind::not_converged) throw;
+        return false;
+      }
+    };
+    if (!is_solved(kept_newton_, kept_) && !is_solved(last_newton_, exact_))
+      attempt(settling_newton_, kept_, Persistence::full);
+    leave_unstable_equilibria();
+  }
+
+  [[nodiscard]] StaticEquilibrium result() const {
+    return {iterate_.displacement(), iterate_.reactions().normal_reaction};
   }
 
  private:
-  /// Resets the iteration; slips of friction are measured from this displacement.
-  void start(const Vector& displacement) {
-    origin_ = displacement;
-    renewals_ = 0;
-    is_new_ = false;
-    last_ = std::numeric_limits<double>::infinity();
-    rate_ = 1.0;
-  }
-
-  /// Performs a correction of Newton's method and returns its largest entry relative to the size of the bodies. Renews
-  /// the factor if the previous correction converged slowly.
-  double correct(double part, StaticEquilibrium& at) {
-    constexpr double slow = 0.3;
-    Stage stage = stage_at(part, at.displacement);
-    is_new_ = rate_ > slow && may_renew();
-    if (is_new_) {
-      solver_->renew_operators(at.displacement, at.displacement);
-      ++renewals_;
+  /// Descends from an unstable equilibrium to a stable one, as a body that is disturbed does.
+  void leave_unstable_equilibria() {
+    Vector direction;
+    for (int descent = 0;; ++descent) {
+      const Index unstable = exact_.unstable_directions(direction);
+      if (unstable == 0) return;
+      if (descent == most_descents || !descend(direction)) {
+        log::warning(
+            "initial.displacement = \"static\": the equilibrium is unstable, and no stable one was found near it: the "
+            "body will move away from it, in a direction that rounding chooses");
+        return;
+      }
+      log::info(
+          fmt::format("a static equilibrium is unstable in {} (buckling): the body is disturbed, and moves to "
+                      "another one",
+                      unstable == 1 ? "one direction" : fmt::format("{} directions", unstable)));
     }
-    solver_->solve(0, stage, solution_);
-    const double correction = largest(problem_, solution_.increment) / size_;
-    if (!std::isfinite(correction)) throw Error(ErrorKind::not_converged, "Newton's method diverges");
-    at.displacement += solution_.increment;
-    at.normal_reaction = solution_.normal_reaction;
-    rows_ = stage.rows;
-    rate_ = correction / last_;
-    last_ = correction;
-    return correction;
+  }
+  /// Returns false, with the present equilibrium, if no other one is found.
+  bool descend(const Vector& direction) {
+    const Vector start = iterate_.displacement();
+    const Reactions reactions = iterate_.reactions();
+    iterate_.start(1.0);
+    iterate_.displacement() += (perturbation * iterate_.size() / direction.lpNorm<Eigen::Infinity>()) * direction;
+    try {
+      (void)ContactNewton::evaluate_with_halving(exact_);
+      approach();
+      exact_.settle();
+      last_newton_.solve(exact_, {iterate_.rounding(), std::numeric_limits<double>::infinity()}, Persistence::brief);
+      return true;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged) throw;
+      log::debug(std::string("descent: ") + error.what());
+    }
+    iterate_.displacement() = start;
+    iterate_.set_reactions(reactions);
+    iterate_.evaluate();
+    return false;
   }
 
-  /// Returns whether a new factor may improve slow convergence.
-  [[nodiscard]] bool may_renew() const { return !is_new_ && renewals_ < most_renewals; }
-
-  Stage stage_at(double part, const Vector& displacement) {
-    find_forces(part, displacement);
-    Stage stage = contact_stage(problem_, displacement, right_hand_side_);
-    stage.linearization.displacement.resize(0);  // one linear stage
-    for (Index i = 0; i < problem_.supports.size(); ++i)
-      stage.right_hand_side.prescribed[i] =
-          part * supported_[i] - displacement[problem_.supports.dofs()[std::size_t(i)]];
-    require_friction(problem_, displacement - origin_, 1.0, stage);
-    return stage;
+  /// Iterates with the least proximal weights with which the tangent is positive definite, until none is needed. Throws
+  /// Error(not_converged).
+  void approach() {
+    int plain = 0;
+    double last = 0.0;
+    for (int iteration = 0; plain < 2; ++iteration) {
+      if (iteration == most_iterations) throw Error(ErrorKind::not_converged, "the disturbed body does not settle");
+      const double weight = exact_.least_definite_weight();
+      exact_.set_proximal_weight(weight);
+      double correction = exact_.iterate().correction;
+      plain = weight == 0.0 && correction < last ? plain + 1 : 0;
+      last = correction;
+      for (; correction > longest_motion * iterate_.size(); correction *= 0.5) iterate_.halve();
+      (void)ContactNewton::evaluate_with_halving(exact_);
+      log::debug(fmt::format("disturbed body: weight {:.2e}, correction {:.2e}", weight, correction));
+    }
   }
 
-  /// Checks the balance of the loads, with the reactions of the last correction, at unsupported dofs.
-  [[nodiscard]] bool is_balanced(const StaticEquilibrium& at) {
-    find_forces(1.0, at.displacement);
-    const double size = largest(problem_, force_) + largest(problem_, load_);
-    rows_->add_force(solution_.normal_reaction, solution_.tangential_reaction, right_hand_side_);
-    for (const Index dof : problem_.supports.dofs()) right_hand_side_[dof] = 0.0;
-    return largest(problem_, right_hand_side_) <= left_of_forces * size;
-  }
-
-  /// Computes f, and L − f with the pressure that follows the surface.
-  void find_forces(double part, const Vector& displacement) {
-    problem_.internal_force->evaluate(displacement, force_);
-    right_hand_side_ = part * load_ - force_;
-    if (problem_.pressure) problem_.pressure->add_force(displacement, 0.0, right_hand_side_, part);
-  }
-
-  const SemidiscreteProblem& problem_;
-  double epsilon_, size_;
-  double last_ = std::numeric_limits<double>::infinity(), rate_ = 1.0;  ///< last correction, ratio to the previous
-  int renewals_ = 0;
-  bool is_new_ = false;  ///< the last correction used a new factor
-  std::unique_ptr<StepSolver> solver_;
-  StageSolution solution_;
-  std::shared_ptr<const ContactRows> rows_;  ///< for the reactions in solution_
-  Vector origin_, load_, supported_, force_, right_hand_side_;
+  EquilibriumIterate iterate_;
+  KeptFactorEquilibrium kept_;
+  ExactEquilibrium exact_;
+  ContactNewton kept_newton_{continuous}, exact_newton_{exact}, settling_newton_{settling}, last_newton_{disturbed};
 };
 
 }  // namespace
@@ -153,14 +157,12 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
                                      const StepSolverOptions& step_options) {
   StepSolverOptions options = step_options;
   options.solves = 0;
-  LoadPath path(problem, options);
-  StaticEquilibrium at{guess, Vector::Zero(problem.contact.size())};
+  LoadPath path(problem, guess, options);
   double reached = 0.0, increment = 1.0;
   while (reached < 1.0) {
-    StaticEquilibrium next = at;
     const double part = std::min(1.0, reached + increment);
     try {
-      path.advance(part, next);
+      path.advance(part);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged) throw;
       increment *= 0.25;
@@ -172,16 +174,21 @@ StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const V
                       "nothing: apply smaller ones, add a [[support]], or start at rest without a static equilibrium",
                       reached, error.what()));
     }
-    at = std::move(next);
     reached = part;
     increment *= 2.0;
   }
-  for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (path.settle(at)) return at;
+  try {
+    path.settle();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::not_converged) throw;
+    throw Error(
+        ErrorKind::not_converged,
+        fmt::format("initial.displacement = \"static\": the body still moves after many iterations ({}): nothing "
+                    "holds it under the loads at t = 0; add a [[support]] in the direction in which it is free "
+                    "to move or turn",
+                    error.what()));
   }
-  throw Error(ErrorKind::not_converged,
-              "initial.displacement = \"static\": the body still moves after many iterations: nothing holds it under "
-              "the loads at t = 0; add a [[support]] in the direction in which it is free to move or turn");
+  return path.result();
 }
 
 }  // namespace ricochet
