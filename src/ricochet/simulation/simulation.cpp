@@ -166,8 +166,7 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
-void Simulation::solve_exactly(std::size_t number, const ExactTangent& tangent, StageSolution& solution,
-                               Vector& unknowns) {
+void Simulation::solve_exactly(std::size_t number, ExactTangent& tangent, StageSolution& solution, Vector& unknowns) {
   const int before = solution.iterations;
   exact_stage_.solve(tangent, current_->stages.at(number).stage.conditions.eligible, solution, unknowns);
   iterations_ += solution.iterations - before;

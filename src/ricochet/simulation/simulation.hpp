@@ -100,8 +100,7 @@ class Simulation : private StageSolve {
   [[nodiscard]] double newton_tolerance() const override { return options_.newton_tolerance; }
   const StageSolution& solve(std::size_t number) override;
   [[nodiscard]] bool solves_exactly() const override { return !problem_.ranks->are_several(); }
-  void solve_exactly(std::size_t number, const ExactTangent& tangent, StageSolution& solution,
-                     Vector& unknowns) override;
+  void solve_exactly(std::size_t number, ExactTangent& tangent, StageSolution& solution, Vector& unknowns) override;
   [[nodiscard]] double renewal_price() const override { return current_->solver->renewal_price(); }
   void rotate_operators(const Vector& displacement) override { current_->solver->rotate_operators(displacement); }
   void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) override {

@@ -88,7 +88,8 @@ class StagesStepSolver final : public StepSolver {
     debts_.setZero();
     if (problem_.pressure) factor_pressure_ = problem_.pressure->last();
     if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
-        !go_half_way(displacement, of_contact_nodes)) {
+        !go_part_way(displacement, of_contact_nodes)) {
+      log::debug("factors of the undeformed body");
       factor_displacement_.resize(0);
       contact_factor_displacement_.resize(0);
       refactorize_all(factor_displacement_, factor_displacement_);
@@ -160,10 +161,19 @@ class StagesStepSolver final : public StepSolver {
     problem_.pressure->set_last(factor_pressure_);
     return make_factors(displacement, of_contact_nodes);
   }
-  /// The tangent of a body squeezed against an obstacle may be indefinite, as contact is not part of it. (Half of a
-  /// displacement is no configuration of bodies that rotate; if supports hold something they mostly do not.)
-  bool go_half_way(const Vector& displacement, const Vector& of_contact_nodes) {
-    return problem_.supports.size() > 0 && make_factors(0.5 * displacement, 0.5 * of_contact_nodes);
+  /// The tangent of a body squeezed against an obstacle may be indefinite, as contact is not part of it; with a part of
+  /// the strains it is not.
+  bool go_part_way(const Vector& displacement, const Vector& of_contact_nodes) {
+    Vector strained, contact_strained;
+    for (const double part : {0.75, 0.5, 0.25}) {
+      frame_->scale_strains(displacement, part, strained);
+      frame_->scale_strains(of_contact_nodes, part, contact_strained);
+      if (make_factors(strained, contact_strained)) {
+        log::debug(fmt::format("factors with {:.2g} of the strains", part));
+        return true;
+      }
+    }
+    return false;
   }
   /// Refactorizes in order: a stage of contact nodes precedes the stage that refers to it.
   void refactorize_all(const Vector& displacement, const Vector& of_contact_nodes) {

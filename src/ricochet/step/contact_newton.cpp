@@ -38,7 +38,8 @@ void ContactNewton::give_up_early(const NewtonEquations::Iteration& iteration) c
   const int done = progress_.iterations();
   const bool is_slow = done >= thresholds_.early_iterations &&
                        progress_.expected_iterations(iteration.increment) > thresholds_.early_iterations;
-  if (is_slow || done >= thresholds_.max_early_iterations) throw progress_.failure(iteration.correction);
+  const bool diverges = iteration.correction > thresholds_.early_divergence * progress_.least_correction();
+  if (is_slow || diverges || done >= thresholds_.max_early_iterations) throw progress_.failure(iteration.correction);
 }
 
 void ContactNewton::follow(NewtonProgress::Advice advice, NewtonEquations& equations,

@@ -16,6 +16,9 @@ struct ExactTangent {
   SparseRowMatrix normal_motion, tangential_motion;  ///< Y and Y_T, likewise
   Vector gap, slip;                                  ///< q, one per point; p, (d−1) per point
   Vector gap_rounding, slip_rounding;                ///< rounding errors of both, one per point
+  /// Whether J is to be made stiffer at closed points from the beginning, as the last solution of a sequence required
+  /// (solver/exact/exact_stage.hpp, which sets it). An assembly leaves it as it is.
+  bool is_stiffened = false;
 };
 
 }  // namespace ricochet

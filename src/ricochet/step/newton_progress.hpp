@@ -47,6 +47,8 @@ class NewtonProgress {
   /// few of them. `increment`: as in assess().
   [[nodiscard]] double expected_iterations(double increment) const;
   [[nodiscard]] Error failure(double correction) const;
+  /// Least correction since the last factorization.
+  [[nodiscard]] double least_correction() const { return least_; }
   [[nodiscard]] int iterations() const { return total_iterations_; }
   [[nodiscard]] int renewals() const { return renewals_; }
 

@@ -25,7 +25,7 @@ class StageSolve {
   /// Solves the equations of an exact tangent with the eligible points of a stage. `solution`: on entry the reactions
   /// of the last iteration, on return those of this one and the contact status; nothing else of it is set. Throws
   /// Error(not_converged).
-  virtual void solve_exactly(std::size_t /*number*/, const ExactTangent& /*tangent*/, StageSolution& /*solution*/,
+  virtual void solve_exactly(std::size_t /*number*/, ExactTangent& /*tangent*/, StageSolution& /*solution*/,
                              Vector& /*unknowns*/) {
     throw std::logic_error("exact tangents are not solved here");
   }
@@ -40,7 +40,7 @@ class StageSolve {
   [[nodiscard]] virtual double renewal_price() const = 0;
   /// Refactorizes the operators with the tangent at `displacement`, those of contact nodes alone with the tangent at
   /// `of_contact_nodes`. If some operator is not positive definite there, all are made without the stiffness of loads
-  /// that follow the surface, or at half of both displacements, or finally for the undeformed body.
+  /// that follow the surface, or with a part of the strains, or finally for the undeformed body.
   virtual void renew_operators(const Vector& displacement, const Vector& of_contact_nodes) = 0;
 };
 

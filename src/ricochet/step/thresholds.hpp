@@ -27,6 +27,7 @@ struct NewtonThresholds {
   int max_pair_iterations = 80;  ///< iterations after which pairs of facets that keep changing are frozen
   /// Iterations after which brief ones are given up unless fewer are expected to be left, and in any case.
   int early_iterations = 30, max_early_iterations = 120;
+  double early_divergence = 20.0;  ///< correction relative to the least one, after which they are given up, too
 };
 
 /// Thresholds of iterations with a proximal weight θ (contact_newton.hpp), which decreases with the motion of an

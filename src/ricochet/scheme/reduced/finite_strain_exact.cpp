@@ -6,6 +6,7 @@ namespace ricochet {
 
 void ExactTangentEquations::start(const State& state) {
   proximal_weight_ = 0.0;
+  equations_.is_stiffened = false;
   solution_ = {};
   solution_.normal_reaction = state.forces.normal_reaction;
   solution_.tangential_reaction = state.forces.tangential_reaction;

@@ -12,9 +12,11 @@ namespace ricochet {
 
 namespace {
 
-/// Keys of State::memory: two waits (Wait), that of the kept factor and that of the exact tangent; and a FactorDebt.
+/// Keys of State::memory: two waits (Wait), that of the kept factor and that of the exact tangent, and the start from
+/// which the latter succeeded last; and a FactorDebt.
 constexpr const char* newton_waits = "newton_waits";
 constexpr const char* factor_debt = "factor_debt";
+constexpr Index last_start = 4;
 
 Vector& numbers_of(State& state, const char* key) {
   Vector& numbers = state.memory[key];
@@ -100,11 +102,16 @@ void FiniteStrainStep::advance_exactly_from(NewtonStart from, const StepTask& ta
   iterate_.finish(exact_.solution(), increment);
 }
 
-/// Takes a step by Newton's method with the exact tangent. Returns false if nothing converges.
+/// Takes a step by Newton's method with the exact tangent: first from where it succeeded last. Returns false if nothing
+/// converges.
 bool FiniteStrainStep::advance_exactly(const StepTask& task, Vector& increment) {
-  for (const NewtonStart from : {NewtonStart::flight, NewtonStart::start_of_step, NewtonStart::descent}) {
+  std::vector<NewtonStart> starts{NewtonStart::flight, NewtonStart::start_of_step, NewtonStart::descent};
+  const double last = numbers_of(task.state, newton_waits)[last_start];
+  std::ranges::stable_sort(starts, {}, [&](NewtonStart start) { return double(start) == last ? 0 : 1; });
+  for (const NewtonStart from : starts) {
     try {
       advance_exactly_from(from, task, increment);
+      numbers_of(task.state, newton_waits)[last_start] = double(from);
       return true;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged) throw;

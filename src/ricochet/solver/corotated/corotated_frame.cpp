@@ -55,6 +55,17 @@ void rotate_nodes(const BodyRotations& bodies, const std::vector<Tensor>& rotati
 
 }  // namespace
 
+void CorotatedFrame::scale_strains(const Vector& displacement, double part, Vector& result) const {
+  std::vector<Tensor> rotations;
+  bodies_.fit(displacement, rotations);
+  const Vector reference = problem_.nodes.reshaped();
+  const Vector position = reference + displacement;
+  result.resize(position.size());
+  problem_.dimension == 2 ? rotate_nodes<2, true>(bodies_, rotations, position, result)
+                          : rotate_nodes<3, true>(bodies_, rotations, position, result);
+  result = part * (result - reference);
+}
+
 void CorotatedFrame::rotate_back(const Vector& values, Vector& result) const {
   if (is_identity_) {
     result = values;

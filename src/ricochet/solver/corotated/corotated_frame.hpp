@@ -23,6 +23,10 @@ class CorotatedFrame {
   /// Sets R = I at this displacement, where the factor has been made (empty: the undeformed body).
   void restart(const Vector& displacement);
 
+  /// Computes a displacement with a part of the strains of another one, and without rotations of the bodies:
+  /// part · (Rᵀ(X + u) − X).
+  void scale_strains(const Vector& displacement, double part, Vector& result) const;
+
   /// Revision number, which changes with R.
   [[nodiscard]] long number() const { return number_; }
   /// Compute Rᵀ v and R v, per dof.

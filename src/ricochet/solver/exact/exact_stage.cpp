@@ -75,20 +75,25 @@ std::vector<Index> ExactStage::penetrating(const ExactTangent& tangent, const st
   return result;
 }
 
-void ExactStage::make_problem(const ExactTangent& tangent) {
+/// Sets c by the diagonal of W.
+void ExactStage::find_stiffness(const Matrix& w) {
+  stiffness_ = 0.0;
+  for (Index i = 0; i < w.rows(); ++i)
+    if (w(i, i) != 0.0) stiffness_ = std::max(stiffness_, stiffening / std::abs(w(i, i)));
+}
+
+void ExactStage::make_problem(const ExactTangent& tangent, Matrix& w) {
   const auto rows = Index(rows_.size()), count = Index(points_.size());
   const Index tangents = problem_.dimension - 1;
-  Matrix w(rows, rows);
+  w.resize(rows, rows);
   contact_.offset.resize(rows);
   contact_.offset_rounding.resize(rows);
-  stiffness_ = 0.0;
   for (Index i = 0; i < rows; ++i) {
     const Row& row = rows_[std::size_t(i)];
     contact_.offset[i] = (row.is_tangent ? tangent.slip : tangent.gap)[row.at] + along(tangent, row, free_);
     contact_.offset_rounding[i] =
         row.is_tangent ? tangent.slip_rounding[row.at / tangents] : tangent.gap_rounding[row.at];
     for (Index j = 0; j < rows; ++j) w(i, j) = along(tangent, row, columns_[std::size_t(j)]);
-    if (w(i, i) != 0.0) stiffness_ = std::max(stiffness_, stiffening / std::abs(w(i, i)));
   }
   contact_.friction_coefficient.resize(count);
   contact_.friction_bound.resize(count);
@@ -99,11 +104,20 @@ void ExactStage::make_problem(const ExactTangent& tangent) {
   contact_.eligible.assign(points_.size(), 1);
   contact_.point_numbers = points_;
   contact_.is_symmetric = false;
-  contact_.contact_operator = make_dense_operator(std::move(w));
+  contact_.contact_operator = make_dense_operator(w);
+}
+
+/// Starts from the reactions of the last iteration.
+void ExactStage::set_warm_start(const StageSolution& last) {
+  right_.setZero(Index(rows_.size()));
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    right_[Index(i)] = rows_[i].is_tangent ? -last.tangential_reaction[rows_[i].at] : last.normal_reaction[rows_[i].at];
+  solver_->set_warm_start(right_);
 }
 
 /// Returns false if the contact problem was not solved.
-bool ExactStage::try_solve(const ExactTangent& tangent, const std::vector<char>& eligible, Vector& unknowns) {
+bool ExactStage::try_solve(const ExactTangent& tangent, const std::vector<char>& eligible, const StageSolution& last,
+                           Vector& unknowns) {
   factorize(tangent);
   const std::vector<Index> candidates = points_;
   points_.clear();
@@ -115,11 +129,16 @@ bool ExactStage::try_solve(const ExactTangent& tangent, const std::vector<char>&
   unknowns = free_;
   for (std::vector<Index> more; true; add_points(tangent, more)) {
     if (!points_.empty()) {
-      make_problem(tangent);
+      Matrix w;
+      make_problem(tangent, w);
       if (solver_ == nullptr) solver_ = make_contact_solver();
       solver_->analyse(contact_);
+      set_warm_start(last);
       solver_->solve(contact_, {}, contact_solution_);
-      if (!contact_solution_.solved()) return false;
+      if (!contact_solution_.solved()) {
+        if (!tangent.is_stiffened) find_stiffness(w);
+        return false;
+      }
       unknowns = free_;
       for (std::size_t j = 0; j < columns_.size(); ++j)
         if (const double r = contact_solution_.reaction[Index(j)]; r != 0.0) unknowns += r * columns_[j];
@@ -154,19 +173,21 @@ void ExactStage::throw_not_solved() const {
                           points_.size(), contact_solution_.reason));
 }
 
-void ExactStage::solve(const ExactTangent& tangent, const std::vector<char>& eligible, StageSolution& solution,
+void ExactStage::solve(ExactTangent& tangent, const std::vector<char>& eligible, StageSolution& solution,
                        Vector& unknowns) {
   const Vector pressed = solution.normal_reaction;
   points_.clear();
   for (Index i = 0; i < pressed.size(); ++i)
     if (pressed[i] > 0.0 && eligible[std::size_t(i)] != 0) points_.push_back(i);
   const bool any_pressed = !points_.empty();
-  if (!try_solve(tangent, eligible, unknowns)) {
+  const bool is_stiffened = tangent.is_stiffened && any_pressed;
+  if (is_stiffened || !try_solve(tangent, eligible, solution, unknowns)) {
     if (!any_pressed) throw_not_solved();
-    log::debug(fmt::format("exact tangent: {}; adding contact stiffness", contact_solution_.reason));
+    if (!is_stiffened) log::debug(fmt::format("exact tangent: {}; adding contact stiffness", contact_solution_.reason));
+    tangent.is_stiffened = true;
     ExactTangent augmented;
     add_stiffness(tangent, pressed, augmented);
-    if (!try_solve(augmented, eligible, unknowns)) throw_not_solved();
+    if (!try_solve(augmented, eligible, solution, unknowns)) throw_not_solved();
   }
   write_solution(solution);
 }

@@ -25,7 +25,7 @@ class ExactStage {
 
   /// Computes z and the reactions; `solution` has those of the last iteration. `eligible`: flag per contact point.
   /// Throws Error(not_converged).
-  void solve(const ExactTangent& tangent, const std::vector<char>& eligible, StageSolution& solution, Vector& unknowns);
+  void solve(ExactTangent& tangent, const std::vector<char>& eligible, StageSolution& solution, Vector& unknowns);
 
   /// Operations of a factorization beyond which solve() refuses the system.
   static constexpr double most_operations = 2e13;
@@ -35,13 +35,16 @@ class ExactStage {
     Index at;         ///< point, or row of a tangent
     bool is_tangent;  ///< whether it is the latter
   };
-  [[nodiscard]] bool try_solve(const ExactTangent& tangent, const std::vector<char>& eligible, Vector& unknowns);
+  [[nodiscard]] bool try_solve(const ExactTangent& tangent, const std::vector<char>& eligible,
+                               const StageSolution& last, Vector& unknowns);
+  void set_warm_start(const StageSolution& last);
   void add_stiffness(const ExactTangent& tangent, const Vector& normal_reaction, ExactTangent& augmented) const;
   void factorize(const ExactTangent& tangent);
   [[nodiscard]] std::vector<Index> penetrating(const ExactTangent& tangent, const std::vector<char>& eligible,
                                                const Vector& unknowns);
   void add_points(const ExactTangent& tangent, const std::vector<Index>& points);
-  void make_problem(const ExactTangent& tangent);
+  void make_problem(const ExactTangent& tangent, Matrix& w);
+  void find_stiffness(const Matrix& w);
   [[nodiscard]] double along(const ExactTangent& tangent, const Row& row, const auto& unknowns) const;
   [[nodiscard]] Index rows_of(Index point) const;
   void write_solution(StageSolution& solution) const;
