@@ -65,6 +65,7 @@ const std::array<Method, 27> methods{
 struct CaseResult {
   std::string failure;
   double created = 0.0, lost = 0.0, penetration = 0.0, variation = 0.0, largest = 0.0;
+  int held = 0;  ///< steps that are frozen with a gap or an overlap
 };
 
 RandomCase make_case(const std::string& kind, unsigned number, const std::filesystem::path& folder) {
@@ -103,6 +104,8 @@ CaseResult run_case_with(const RandomCase& random_case, const Method& method) {
       result.variation += begins ? 0.0 : std::abs(force - before);
       result.largest = std::max(result.largest, force);
       before = force;
+      constexpr double felt = 1e-8;  // of a cell
+      if (account.unsettled_gap() > felt * random_case.cell) ++result.held;
       begins = false;
     };
     look();
@@ -135,7 +138,7 @@ int main(int argc, char** argv) {
       keeps ? std::filesystem::path(argv[5])
             : std::filesystem::temp_directory_path() / fmt::format("ricochet_random_{}", getpid());
   std::filesystem::create_directories(folder);
-  std::cout << "case,description,friction,crossings,method,created,lost,penetration,variation,largest,failure\n";
+  std::cout << "case,description,friction,crossings,method,created,lost,penetration,variation,largest,held,failure\n";
   for (unsigned number = first; number < first + count; ++number) {
     const RandomCase random_case = make_case(kind, number, folder);
     if (keeps) {
@@ -146,9 +149,9 @@ int main(int argc, char** argv) {
       if (!method.takes_friction && random_case.friction > 0.0) continue;
       if (std::string(method.name).find(wanted) == std::string::npos) continue;
       const CaseResult outcome = run_case_with(random_case, method);
-      fmt::print("{},\"{}\",{:.3g},{:.3g},\"{}\",{:.3e},{:.3e},{:.3e},{:.4e},{:.4e},\"{}\"\n", number,
+      fmt::print("{},\"{}\",{:.3g},{:.3g},\"{}\",{:.3e},{:.3e},{:.3e},{:.4e},{:.4e},{},\"{}\"\n", number,
                  random_case.description, random_case.friction, random_case.crossings, method.name, outcome.created,
-                 outcome.lost, outcome.penetration, outcome.variation, outcome.largest, outcome.failure);
+                 outcome.lost, outcome.penetration, outcome.variation, outcome.largest, outcome.held, outcome.failure);
     }
     if (keeps) continue;
     std::filesystem::remove(folder / fmt::format("mesh_{}.msh", number));

@@ -54,6 +54,19 @@ class RandomCases(TestCase):
         touched = [float(row["largest"]) > 0.0 for row in rows["reduced-kane, equivalent"]]
         self.assertGreater(sum(touched), CASES["turn"] // 2)
 
+    def test_nor_where_bodies_slide_over_ends_and_corners(self):
+        """Also in steps whose pairs are frozen while points are over a rim, as in cases 132 and 251."""
+        rows = []
+        for first, count in (("1", "16"), ("132", "1"), ("251", "1")):
+            output = subprocess.run([str(PROGRAM), "slide", first, count, DEFAULT[0]], capture_output=True, text=True, check=True).stdout
+            rows += csv.DictReader(io.StringIO(output))
+        ended = [row for row in rows if "overlap at the start" not in row["failure"]]
+        self.assertGreater(len(ended), 12)
+        for row in ended:
+            self.assertEqual(row["failure"], "", row["description"])
+            self.assertLessEqual(float(row["created"]), 1e-8, row["description"])
+        self.assertGreater(sum(int(row["held"]) for row in ended), 0)
+
     def test_nor_between_bodies_whose_meshes_do_not_match(self):
         rows = self.run_cases("pair", "reduced-kane")
         self.check_energy(rows, "reduced-kane")

@@ -111,14 +111,13 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] bool has_frozen() const override { return has_frozen_; }
 
   void allow_overlap(Vector& gap) const override {
+    if (is_frozen_) return;  // frozen gaps include it
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const PairViews& views = pair_views_[k];
       if (views.is_apart) continue;
       for (std::size_t i = 0; i < views.at_start.size(); ++i) {
         const double before = views.at_start[i].faces ? views.at_start[i].gap : 0.0;
-        // Held gaps of points that enter already include it.
-        const bool has_it = is_frozen_ && views.enters(i);
-        if (before < -least_overlap * extent_ && !views.is_out_of_reach(i) && !has_it) gap[number(k, i)] -= before;
+        if (before < -least_overlap * extent_ && !views.is_out_of_reach(i)) gap[number(k, i)] -= before;
       }
     }
   }
@@ -219,8 +218,8 @@ class SlidingContact final : public ContactGeometry {
         gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
         along_step += value.head(d).dot(writer_.step().segment(node * d, d));
       }
-      // As seen from the end of the step such a point starts with penetration: removing it would create energy.
-      if (views.enters(i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
+      // As its row sees it, the point starts with this gap: removing an overlap would create energy.
+      gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
     }
   }
 
