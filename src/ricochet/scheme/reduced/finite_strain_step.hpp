@@ -73,8 +73,8 @@ class FiniteStrainStep {
   KeptFactorEquations kept_{iterate_};
   ExactTangentEquations exact_{iterate_};
   ContactNewton newton_;
-  /// None of the exact iterations asks for a new factor: all have their own.
-  ContactNewton exact_newton_{NewtonThresholds{.max_iterations = 30, .max_renewals = 0}};
+  /// None of the exact iterations asks for a new factor: all have their own. Their corrections may grow for a while.
+  ContactNewton exact_newton_{NewtonThresholds{.max_iterations = 30, .max_renewals = 0, .early_divergence = 1e3}};
 };
 
 }  // namespace ricochet

@@ -20,7 +20,7 @@ namespace {
 /// forces over ε: with too small a value Newton's method does not settle; a larger one requires more iterations at the
 /// end.
 constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-4;
-/// Tolerated residual, relative to the largest force.
+/// Tolerated residual, relative to the largest force, beside that of the rounding of positions.
 constexpr double left_of_forces = 1e-10;
 /// Factor of corrections from which on they no longer shrink.
 constexpr double stalled = 0.9;
@@ -44,6 +44,7 @@ EquilibriumIterate::EquilibriumIterate(const SemidiscreteProblem& problem, const
     : problem_(problem),
       epsilon_(proximal_coefficient(problem)),
       size_(extent(problem.nodes)),
+      stiffness_(problem.internal_force->stiffness_diagonal().maxCoeff()),
       displacement_(guess),
       last_(guess),
       origin_(guess) {
@@ -91,7 +92,7 @@ bool EquilibriumIterate::is_balanced() const {
   Vector residual = right_hand_side_;
   rows_->add_force(reactions_.normal_reaction, reactions_.tangential_reaction, residual);
   for (const Index dof : problem_.supports.dofs()) residual[dof] = 0.0;
-  return largest(problem_, residual) <= left_of_forces * size;
+  return largest(problem_, residual) <= left_of_forces * size + stiffness_ * rounding();
 }
 
 NewtonEquations::Iteration EquilibriumIterate::sizes() const {

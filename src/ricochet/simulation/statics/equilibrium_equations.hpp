@@ -50,6 +50,7 @@ class EquilibriumIterate {
  private:
   const SemidiscreteProblem& problem_;
   double epsilon_, size_;
+  double stiffness_;  ///< largest K_ii
   double part_ = 0.0;
   Vector displacement_, last_, origin_;
   Vector load_, supported_, force_, right_hand_side_;

@@ -25,7 +25,7 @@ constexpr double longest_motion = 0.1;
 /// some.
 constexpr NewtonThresholds continuous = {.divergence = 10.0, .max_renewals = 3},
                            exact = {.divergence = 2.0, .max_iterations = 15, .max_renewals = 0};
-constexpr NewtonThresholds disturbed = {.max_iterations = 30, .max_renewals = 0};
+constexpr NewtonThresholds disturbed = {.max_iterations = 30, .max_renewals = 0, .early_divergence = 1e4};
 /// Iterations of the proximal point method may converge slowly.
 constexpr NewtonThresholds settling = {.max_iterations = 100, .max_renewals = 3};
 

@@ -110,8 +110,11 @@ void ExactStage::make_problem(const ExactTangent& tangent, Matrix& w) {
 /// Starts from the reactions of the last iteration.
 void ExactStage::set_warm_start(const StageSolution& last) {
   right_.setZero(Index(rows_.size()));
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    right_[Index(i)] = rows_[i].is_tangent ? -last.tangential_reaction[rows_[i].at] : last.normal_reaction[rows_[i].at];
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    if (!row.is_tangent && last.normal_reaction.size() > 0) right_[Index(i)] = last.normal_reaction[row.at];
+    if (row.is_tangent && last.tangential_reaction.size() > 0) right_[Index(i)] = -last.tangential_reaction[row.at];
+  }
   solver_->set_warm_start(right_);
 }
 
