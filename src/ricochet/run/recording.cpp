@@ -89,6 +89,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, *model.problem.ranks, column_index(recorder_.columns(), "max_rotation")),
+      inversion_(model.body, *model.problem.ranks),
       method_(scheme.traits_for(model.problem).acting_reactions, *model.problem.ranks,
               scheme.traits().corrects_velocities && has_finite_strain(model.body)),
       history_every_(input.output.history_every.value_or(scheme.traits().history_every)) {
@@ -111,6 +112,7 @@ void Recording::persist(const SnapshotVisitor& visit) {
   sliding_.persist(visit.part("sliding"));
   late_.persist(visit.part("late_contact"));
   rotation_.persist(visit.part("rotation"));
+  inversion_.persist(visit.part("inversion"));
   method_.persist(visit.part("method"));
 }
 
@@ -175,6 +177,7 @@ void Recording::write_row(const State& state, EnergyAccount& account) {
   });
   digest_.add(row);
   rotation_.watch(row, state);
+  inversion_.watch(row[1], state);
   checks_.watch(row, state);
 }
 
