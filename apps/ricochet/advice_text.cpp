@@ -267,7 +267,7 @@ void print_pairs(const Model& model, std::size_t entry) {
 }
 
 void print_contact(const Case& input, const Model& model, std::size_t pair) {
-  if (model.contact_pairs[pair].is_one_of_many) return;
+  if (model.contact_pairs[pair].is_one_of_many || model.contact_pairs[pair].at_corners) return;
   if (model.contact_pairs[pair].has_two_sides()) return print_bodies_contact(input, model, pair);
   if (model.contact_pairs[pair].tied) return;
   const ContactBoundary& contact = model.problem.contact;
@@ -324,8 +324,8 @@ void print_cell_sizes(const Mesh& mesh) {
 
 void print_facings(const Case& input, const Model& model) {
   for (std::size_t pair = 0; pair < model.contacts.size(); ++pair) {
-    if (model.contact_pairs[pair].has_two_sides() && !model.contact_pairs[pair].is_one_of_many)
-      print_bodies_contact(input, model, pair);
+    const ContactPair& of = model.contact_pairs[pair];
+    if (of.has_two_sides() && !of.is_one_of_many && !of.at_corners) print_bodies_contact(input, model, pair);
   }
 }
 

@@ -80,14 +80,20 @@ class TwoBodiesTraps(TestCase):
             self.assertAlmostEqual(late(side, **{other: 2}), first, delta=0.02 * first)
             self.assertLess(late(side, **{carries: 2}), 0.35 * first)
 
-    def test_a_ridge_that_facets_do_not_see_at_all(self):
-        """With sliding = "large" only the mesh can be changed, and the message states the reason."""
+    def test_a_ridge_between_contact_points_is_one_itself(self):
+        """With sliding = "large" the corners of the side without multipliers are contact points: large facets see them, too."""
         above = '[[contact]]\ngroup = "one.top"\nagainst = "two.bottom"\nsliding = "large"\nmultipliers_on = "against"\n'
         case = self.bodies(wedge(4), strip(3, 2, 0.5), "[time]\nstep = 0.02\nend = 2.2\n", above)
         values = {"part.two.move": "[0.0, 1.51]", "part.one.velocity": "[0.0, 0.1]", "material.0.law": "neo-hookean", "material.1.law": "neo-hookean"}
-        [told] = self.warnings(self.simulate(case, values=values), "more than half a facet")
-        self.assertIn('gaps are means over facets of "two.bottom", which carries the multipliers, and this overlap does not show in them', told)
-        self.assertEqual(self.warnings(self.simulate(case, name="fine", values={**values, "part.two.refine": 2}), "more than half a facet"), [])
+        forces = []
+        for name, refined in (("coarse", {}), ("fine", {"part.two.refine": 2})):
+            out = self.simulate(case, name=name, values={**values, **refined})
+            self.assertEqual(self.warnings(out, "more than half a facet"), [])
+            history = History(out / "history.csv")
+            self.assertLess(max(history["max_penetration"]), 0.5 / 2)
+            forces.append(min(history["pair_force.0_y"]))
+        self.assertLess(forces[0], 0.0)  # on the body below
+        self.assertAlmostEqual(forces[0] / forces[1], 1.0, delta=0.5)
 
     def test_ties_between_bodies_that_move_apart(self):
         tied = '[[contact]]\ngroup = "one.right"\nagainst = "two.left"\ntied = true\n'

@@ -54,6 +54,7 @@ struct ContactPair {
   bool tied = false;             ///< whether the groups are glued (tied_surfaces.hpp); there are no contact points then
   bool exchanged = false;        ///< whether the case names `opposite_group` first; reports give forces on its body
   bool is_one_of_many = false;   ///< whether it is one of all pairs of bodies; surfaces far apart are then skipped
+  bool at_corners = false;       ///< whether the pair consists of the corners of another one (mortar/corner_pairs.hpp)
   std::string side_reason = {};  ///< why `group` carries the multipliers; empty if the case specifies it
 
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }

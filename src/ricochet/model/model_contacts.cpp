@@ -8,6 +8,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/construction/make_contact_boundary.hpp"
 #include "ricochet/contact/mortar/body_contact.hpp"
+#include "ricochet/contact/mortar/corner_pairs.hpp"
 #include "ricochet/contact/multipliers/multiplier_space.hpp"
 #include "ricochet/model/model_parts.hpp"
 
@@ -88,6 +89,18 @@ void check_stability(const Case& input, const ModelContact& section, const Model
   }
 }
 
+/// Adds the pairs of corners after all others, whose numbers users see.
+void add_corners(Model& model) {
+  const std::size_t pairs = model.contact_pairs.size();
+  for (std::size_t i = 0; i < pairs; ++i) {
+    const std::optional<ContactPair> corners = corner_pair(model.body, model.contact_pairs[i]);
+    if (!corners) continue;
+    model.contacts.push_back(ModelContact(model.contacts[i]));
+    model.contact_pairs.push_back(*corners);
+    model.problem.obstacles.push_back(nullptr);
+  }
+}
+
 ContactPair obstacle_pair(const Case& input, const ModelContact& section, const Model& model) {
   ContactPair pair;
   pair.group = section.group;
@@ -119,6 +132,7 @@ void collect_contacts(const Case& input, Model& model) {
     if (!model.contact_pairs.back().tied) check_stability(input, contact, model);
   }
   check_overlap(input, model);
+  add_corners(model);
   fit_obstacles(input, model);
 }
 
@@ -133,7 +147,7 @@ void add_contacts(const Case& input, Model& model) {
         make_contact_boundary(model.body, model.contact_pairs, is_free, &supported, &model.pair_facings);
   });
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
-    if (model.contact_pairs[i].between_bodies() && !model.contact_pairs[i].tied) check_facing(input, i, model);
+    if (model.contact_pairs[i].has_two_sides() && !model.contact_pairs[i].at_corners) check_facing(input, i, model);
   }
   model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
   warn_of_bounds_without_area(model);

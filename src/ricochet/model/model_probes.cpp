@@ -74,6 +74,18 @@ std::size_t count_of_entry(const Model& model, std::size_t number) {
       model.contacts, [&](const ModelContact& contact) { return contact.entry == model.contacts[number].entry; }));
 }
 
+/// A pair, and that of its corners.
+std::vector<SensedPair> with_corners(const Model& model, std::size_t number) {
+  const ContactPair& pair = model.contact_pairs[number];
+  std::vector<SensedPair> result{{int(number), pair.exchanged}};
+  for (std::size_t i = number + 1; i < model.contact_pairs.size(); ++i) {
+    const ContactPair& other = model.contact_pairs[i];
+    if (other.at_corners && other.facets == pair.opposite_facets && other.opposite_facets == pair.facets)
+      result.push_back({int(i), other.exchanged});
+  }
+  return result;
+}
+
 }  // namespace
 
 void add_standing_columns(const Case& input, Model& model) {
@@ -84,8 +96,8 @@ void add_standing_columns(const Case& input, Model& model) {
   }
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
-    if (!pair.has_two_sides() || count_of_entry(model, number) > most_pairs) continue;
-    model.sensors.push_back(make_pair_force_sensor(model.problem, int(number), pair.exchanged));
+    if (!pair.has_two_sides() || pair.at_corners || count_of_entry(model, number) > most_pairs) continue;
+    model.sensors.push_back(make_pair_force_sensor(model.problem, int(number), with_corners(model, number)));
   }
 }
 

@@ -43,7 +43,7 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
 
 std::optional<PairingDescription> describe_facing(const Model& model, std::size_t contact) {
   const ContactPair& pair = model.contact_pairs[contact];
-  if (!pair.has_two_sides()) return {};
+  if (!pair.has_two_sides() || pair.at_corners) return {};
   const PairingSummary& facing = model.pair_facings[contact];
   PairingDescription result{pair.group, pair.side_reason, facing.points};
   result.covered = facing.area > 0.0 ? facing.covered / facing.area : 0.0;
@@ -86,8 +86,8 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.energy_instant = scheme.traits().energy_instant;
   summary.force_instant = scheme.traits().force_instant;
   summary.rotation.limit = limit_of_rotation(model.body);
-  for (const ModelContact& contact : model.contacts)
-    summary.contacts.push_back(describe_contact(input, contact, contact.all_pairs_group));
+  for (std::size_t i = 0; i < model.contacts.size() && !model.contact_pairs[i].at_corners; ++i)
+    summary.contacts.push_back(describe_contact(input, model.contacts[i], model.contacts[i].all_pairs_group));
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   for (std::size_t number = 0; number < model.probe_targets.size(); ++number) {
     const ProbeTargets& targets = model.probe_targets[number];

@@ -6,6 +6,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/point_sets.hpp"
 #include "ricochet/contact/construction/boundary_patch.hpp"
+#include "ricochet/contact/mortar/corner_pairs.hpp"
 #include "ricochet/contact/mortar/paired_surfaces.hpp"
 #include "ricochet/contact/sliding/sliding_contact.hpp"
 
@@ -120,7 +121,7 @@ void evaluate_at_start(const Body& body, const ContactPair& pair, const FreeComp
     facing.smallest_gap = std::min(facing.smallest_gap, views[i].gap);
     facing.largest_gap = std::max(facing.largest_gap, views[i].gap);
     if (!pair.closed_gaps || views[i].gap >= 0.0) continue;
-    patch.conditions[i].gap = -views[i].gap;
+    patch.conditions[i].gap -= views[i].gap;
     ++facing.closed;
   }
 }
@@ -134,7 +135,9 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
   const OwnNormals normals(body, pair);
   check_normals(body, pair, normals, facing);
+  const std::vector<Index> corners = pair.at_corners ? convex_corners(body, pair.facets) : std::vector<Index>{};
   for (Multiplier& multiplier : patch.space->multipliers()) {
+    if (pair.at_corners && !std::ranges::binary_search(corners, multiplier.node)) continue;
     const auto moves = [&](const auto& entry) {
       for (int k = 0; k < body.space->dimension; ++k) {
         if (is_free(entry.first, k)) return true;
@@ -147,7 +150,8 @@ void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeCom
     }
     RotatingNormal normal = normals.of(multiplier);
     const Eigen::Vector3d direction = normal.at(body.space->nodes, {});
-    patch.conditions.push_back({direction.normalized().head(body.space->dimension), {}, 0.0, 0.0});
+    const double allowance = pair.at_corners ? corner_allowance * multiplier.weight : 0.0;
+    patch.conditions.push_back({direction.normalized().head(body.space->dimension), {}, allowance, 0.0});
     patch.rotating_normals.push_back(std::move(normal));
     patch.retained.push_back(std::move(multiplier));
   }

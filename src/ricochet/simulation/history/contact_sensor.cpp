@@ -42,10 +42,10 @@ SpaceVector force_on_first(const State& state, const std::vector<PairPoints>& pa
 
 class PairForceSensor final : public QuantitySensor<PairForceSensor> {
  public:
-  PairForceSensor(const SemidiscreteProblem& problem, int contact, bool exchanged)
+  PairForceSensor(const SemidiscreteProblem& problem, int contact, const std::vector<SensedPair>& pairs)
       : QuantitySensor("pair_force." + std::to_string(contact), problem),
         problem_(problem),
-        pairs_(points_of(problem.contact, {SensedPair{contact, exchanged}})) {}
+        pairs_(points_of(problem.contact, pairs)) {}
 
   static const Quantities& quantities() {
     static const Quantities all{
@@ -207,8 +207,9 @@ std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const Semid
   return std::make_unique<ContactSensor>(name, problem, pairs);
 }
 
-std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact, bool exchanged) {
-  return std::make_unique<PairForceSensor>(problem, contact, exchanged);
+std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,
+                                               const std::vector<SensedPair>& pairs) {
+  return std::make_unique<PairForceSensor>(problem, contact, pairs);
 }
 
 }  // namespace ricochet

@@ -63,9 +63,9 @@ struct SensedPair {
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           const std::vector<SensedPair>& pairs);
 
-/// Force of a contact between bodies alone, in the columns pair_force.N_x … of contact N.
+/// Force of a contact between bodies alone, in the columns pair_force.N_x … of contact N: a pair, and its corners.
 [[nodiscard]] std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,
-                                                             bool exchanged);
+                                                             const std::vector<SensedPair>& pairs);
 [[nodiscard]] std::vector<RowQuantity> pair_force_quantities();
 
 /// Motion of a free rigid body and the contact force on it.

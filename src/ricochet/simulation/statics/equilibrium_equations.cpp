@@ -20,8 +20,8 @@ namespace {
 /// forces over ε: with too small a value Newton's method does not settle; a larger one requires more iterations at the
 /// end.
 constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-4;
-/// Tolerated residual, relative to the largest force, beside that of the rounding of positions.
-constexpr double left_of_forces = 1e-10;
+/// Tolerated residual, relative to the largest force, and largest effect of the rounding of positions beside it.
+constexpr double left_of_forces = 1e-10, most_rounding = 1e-8;
 /// Factor of corrections from which on they no longer shrink.
 constexpr double stalled = 0.9;
 /// Iterations that may follow where corrections no longer shrink but forces are not balanced.
@@ -92,7 +92,7 @@ bool EquilibriumIterate::is_balanced() const {
   Vector residual = right_hand_side_;
   rows_->add_force(reactions_.normal_reaction, reactions_.tangential_reaction, residual);
   for (const Index dof : problem_.supports.dofs()) residual[dof] = 0.0;
-  return largest(problem_, residual) <= left_of_forces * size + stiffness_ * rounding();
+  return largest(problem_, residual) <= left_of_forces * size + std::min(stiffness_ * rounding(), most_rounding * size);
 }
 
 NewtonEquations::Iteration EquilibriumIterate::sizes() const {
