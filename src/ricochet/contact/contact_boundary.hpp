@@ -60,6 +60,13 @@ struct ContactPair {
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
   /// Whether the pair is between bodies and has contact points.
   [[nodiscard]] bool has_two_sides() const { return between_bodies() && !tied; }
+  /// Gives the multipliers to the other side.
+  void exchange_sides() {
+    std::swap(group, opposite_group);
+    std::swap(facets, opposite_facets);
+    if (pair_at.size() > 0) pair_at = -pair_at;
+    exchanged = !exchanged;
+  }
   /// Whether the surface may come into contact with itself.
   [[nodiscard]] bool is_self() const { return large_sliding && facets == opposite_facets; }
   /// The two groups in the order of the case.
@@ -135,6 +142,8 @@ struct ContactBoundary {
     return friction_coefficient[point] > 0.0 || friction_bound[point] > 0.0;
   }
   [[nodiscard]] bool follows_motion() const { return geometry != nullptr; }
+  /// Holds the present pairs of facets until the end of the step. Returns false if there are none, or if they are held.
+  [[nodiscard]] bool freeze_pairs() const { return follows_motion() && geometry->freeze(); }
   [[nodiscard]] bool follows_motion(Index point) const {
     return !rows_follow.empty() && rows_follow[std::size_t(point)] != 0;
   }

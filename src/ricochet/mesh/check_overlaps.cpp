@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -68,8 +69,6 @@ Eigen::Vector3d direction(const Mesh& mesh, const Index* cell, const Edge& edge)
   return tangent / tangent.norm();
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 /// Solid angle between unit vectors (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125–126).
 double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return 2.0 * std::atan2(std::abs(a.dot(b.cross(c))), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
@@ -86,7 +85,7 @@ std::vector<double> sums_of_angles(const Mesh& mesh) {
         for (const Cone& cone : cones[vertex]) {
           const Eigen::Vector3d a = direction(mesh, cell, cone[0]), b = direction(mesh, cell, cone[1]);
           sums[std::size_t(cell[vertex])] +=
-              mesh.dimension == 2 ? angle(a, b) : solid_angle(a, b, direction(mesh, cell, cone[2]));
+              mesh.dimension == 2 ? angle_between(a, b) : solid_angle(a, b, direction(mesh, cell, cone[2]));
         }
       }
     }

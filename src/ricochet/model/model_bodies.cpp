@@ -135,12 +135,7 @@ ContactPair body_pair(const Case& input, const ModelContact& section, const Mode
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
       is_chosen ? choose_side(model.body, pair) : SideChoice{section.multipliers_on == "against", ""};
-  if (choice.opposite) {
-    std::swap(pair.group, pair.opposite_group);
-    std::swap(pair.facets, pair.opposite_facets);
-    if (pair.pair_at.size() > 0) pair.pair_at = -pair.pair_at;
-    pair.exchanged = true;
-  }
+  if (choice.opposite) pair.exchange_sides();
   pair.side_reason = choice.reason;
   if (is_chosen && !pair.is_one_of_many) {
     log::info(fmt::format("contact of \"{}\" against \"{}\": {}: {}", section.group, section.against,

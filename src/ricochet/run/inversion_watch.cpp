@@ -12,10 +12,10 @@ InversionWatch::InversionWatch(const Body& body, const Ranks& ranks) : body_(bod
 }
 
 void InversionWatch::watch(double time, const State& state) {
-  if (!volumes_ || has_warned_ != 0) return;
+  if (!volumes_ || has_warned_) return;
   const VertexVolumes::Smallest found = volumes_->smallest(state.displacement);
   if (found.ratio > 0.0) return;
-  has_warned_ = 1;
+  has_warned_ = true;
   const CellLocation cell = location_of_cell(*body_.mesh, found.cell);
   log::warning(fmt::format(
       "at t = {:.6g} cell {} at ({:.6g}) is turned inside out at a vertex, where its volume is {:.3g} times "

@@ -21,7 +21,7 @@ class InversionWatch {
  private:
   const Body& body_;
   std::optional<VertexVolumes> volumes_;
-  int has_warned_ = 0;
+  bool has_warned_ = false;
 };
 
 }  // namespace ricochet

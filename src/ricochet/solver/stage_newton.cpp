@@ -29,8 +29,6 @@ void StageNewton::evaluate() {
   find_force(displacement_, force_);
 }
 
-bool StageNewton::freeze() { return problem_.contact.follows_motion() && problem_.contact.geometry->freeze(); }
-
 /// Sets the stage for a correction of δ = total.
 void StageNewton::linearize() {
   const OperatorCoefficients& coefficients = task_->coefficients;

@@ -38,7 +38,7 @@ class StageNewton : private NewtonEquations {
   void evaluate() override;
   void halve() override { total_ = 0.5 * (total_ + before_); }
   void renew() override { task_->renew(displacement_); }
-  [[nodiscard]] bool freeze() override;
+  [[nodiscard]] bool freeze() override { return problem_.contact.freeze_pairs(); }
   void store_stage(const Stage& stage);
   void linearize();
   void find_force(const Vector& displacement, Vector& force);

@@ -51,7 +51,7 @@ void TangentIterations::follow_motion(StageSolver& solver, Stage& stage, StageSo
     // conditions.
     const bool is_stuck = iteration - last_progress > thresholds_.max_stalled_pairs || !std::isfinite(error) ||
                           iteration == thresholds_.max_iterations;
-    if (is_stuck && problem_.contact.follows_motion() && problem_.contact.geometry->freeze()) {
+    if (is_stuck && problem_.contact.freeze_pairs()) {
       best_error = std::numeric_limits<double>::infinity();
       last_progress = last_start = iteration;
       acceleration_.restart();

@@ -32,6 +32,7 @@ SparseRowMatrix TangentAssembly::assemble(Index rows, const Triplets& entries) c
   return result;
 }
 
+/// Rows of reactions as forces in all of these equations.
 SparseRowMatrix TangentAssembly::forces_of(const SparseRowMatrix& rows,
                                            const std::vector<const Equations*>& equations) const {
   Triplets entries;
@@ -46,6 +47,7 @@ SparseRowMatrix TangentAssembly::forces_of(const SparseRowMatrix& rows,
   return assemble(rows.rows(), entries);
 }
 
+/// Derivatives by unknowns, from those by the motions of dofs; known motions are added to the offset.
 SparseRowMatrix TangentAssembly::motions_of(const SparseRowMatrix& rows, const Motions& motions, Vector& offset) const {
   Triplets entries;
   for (Index row = 0; row < rows.rows(); ++row) {
@@ -59,6 +61,22 @@ SparseRowMatrix TangentAssembly::motions_of(const SparseRowMatrix& rows, const M
     }
   }
   return assemble(rows.rows(), entries);
+}
+
+void TangentAssembly::add_contact(const ContactTangent& contact, const ContactConditions& conditions, double slip_time,
+                                  const std::vector<const Equations*>& equations, const Motions& motions,
+                                  ExactTangent& tangent) {
+  for (const Equations* const of : equations) add(contact.force(), -1.0, *of, motions);
+  tangent.gap = conditions.gap.offset;
+  tangent.gap_rounding = conditions.gap.rounding;
+  tangent.normal_force = forces_of(contact.normal_rows(), equations);
+  tangent.normal_motion = motions_of(contact.gap(), motions, tangent.gap);
+  const bool has_friction = conditions.slip.offset.size() > 0;
+  const double scale = has_friction ? slip_time / conditions.slip.factor : 0.0;
+  tangent.slip = scale * conditions.slip.offset;
+  tangent.slip_rounding = scale * conditions.slip.rounding;
+  tangent.tangential_force = forces_of(contact.tangential_rows(), equations);
+  if (has_friction) tangent.tangential_motion = motions_of(contact.slip(), motions, tangent.slip);
 }
 
 void TangentAssembly::write(ExactTangent& tangent) const {

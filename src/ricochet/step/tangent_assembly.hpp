@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/step/contact_tangent.hpp"
 #include "ricochet/step/exact_tangent.hpp"
 
 /// @file Assembly of an ExactTangent from matrices per dof.
@@ -31,16 +32,18 @@ class TangentAssembly {
   }
   /// Adds factor · matrix · motions of its columns to the equations of its rows; known motions go to r.
   void add(const SparseMatrix& matrix, double factor, const Equations& rows, const Motions& columns);
-  /// Rows of reactions as forces in all of these equations.
-  [[nodiscard]] SparseRowMatrix forces_of(const SparseRowMatrix& rows,
-                                          const std::vector<const Equations*>& equations) const;
-  /// Derivatives by unknowns, from those by the motions of dofs; known motions are added to the offset.
-  [[nodiscard]] SparseRowMatrix motions_of(const SparseRowMatrix& rows, const Motions& motions, Vector& offset) const;
+  /// Adds the change of the forces of contact in all of these equations to J, and writes B, Y, Y_T, q and p. Slips are
+  /// `slip_time` / σ times the slip rates of the conditions, σ their factor.
+  void add_contact(const ContactTangent& contact, const ContactConditions& conditions, double slip_time,
+                   const std::vector<const Equations*>& equations, const Motions& motions, ExactTangent& tangent);
   /// Writes J and r.
   void write(ExactTangent& tangent) const;
 
  private:
   using Triplets = std::vector<Eigen::Triplet<double>>;
+  [[nodiscard]] SparseRowMatrix forces_of(const SparseRowMatrix& rows,
+                                          const std::vector<const Equations*>& equations) const;
+  [[nodiscard]] SparseRowMatrix motions_of(const SparseRowMatrix& rows, const Motions& motions, Vector& offset) const;
   [[nodiscard]] SparseRowMatrix assemble(Index rows, const Triplets& entries) const;
 
   Index count_ = 0;            ///< of unknowns

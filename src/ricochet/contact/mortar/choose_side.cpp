@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/contact/mortar/facet_surface.hpp"
 #include "ricochet/contact/mortar/normal_variation.hpp"
 
@@ -51,7 +52,7 @@ double curvature_of(const Body& body, const FacetSurface& surface, double most) 
   Index count = 0;
   const auto add = [&](const FacetSurface::Facet& a, const FacetSurface::Facet& b) {
     const FacetSurface::Vector3 one = a.area_vector.normalized(), other = b.area_vector.normalized();
-    const double angle = std::atan2(one.cross(other).norm(), one.dot(other)), distance = (a.centre - b.centre).norm();
+    const double angle = angle_between(one, other), distance = (a.centre - b.centre).norm();
     sum += angle > rounding && angle <= most && distance > 0.0 ? angle / distance : 0.0;
     ++count;
   };

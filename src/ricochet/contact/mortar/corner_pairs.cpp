@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/contact/mortar/facet_surface.hpp"
 #include "ricochet/contact/mortar/paired_surfaces.hpp"
 
@@ -24,8 +25,7 @@ std::vector<Index> convex_corners(const Body& body, const std::vector<Index>& fa
     if (around.size() != 2) continue;
     const FacetSurface::Facet &one = *facet_of.at(around[0]), &other = *facet_of.at(around[1]);
     const FacetSurface::Vector3 normal = one.area_vector.normalized(), next = other.area_vector.normalized();
-    const double angle = std::atan2(normal.cross(next).norm(), normal.dot(next));
-    if (angle > sharp && normal.dot(other.centre - one.centre) < 0.0) result.push_back(node);
+    if (angle_between(normal, next) > sharp && normal.dot(other.centre - one.centre) < 0.0) result.push_back(node);
   }
   return result;
 }
@@ -34,10 +34,7 @@ std::optional<ContactPair> corner_pair(const Body& body, const ContactPair& pair
   if (!pair.large_sliding || pair.tied || pair.is_self() || body.mesh->dimension != 2) return {};
   if (convex_corners(body, pair.opposite_facets).empty()) return {};
   ContactPair corners = pair;
-  std::swap(corners.group, corners.opposite_group);
-  std::swap(corners.facets, corners.opposite_facets);
-  if (corners.pair_at.size() > 0) corners.pair_at = -corners.pair_at;
-  corners.exchanged = !pair.exchanged;
+  corners.exchange_sides();
   corners.multipliers = "p1";
   corners.at_corners = true;
   return corners;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/contact/mortar/facet_surface.hpp"
 #include "ricochet/mesh/disjoint_sets.hpp"
 
@@ -19,10 +20,6 @@ constexpr double level = 1e-6, edge = 0.25 * std::numbers::pi;
 
 /// Angle, in angles between two facets, up to which a normal counts as included beyond the last of them.
 constexpr double past_end = 0.75;
-
-double angle_between(const Vector3& one, const Vector3& other) {
-  return std::atan2(one.cross(other).norm(), one.dot(other));
-}
 
 BoxTree::Box box_around(const Vector3& centre, double reach) {
   return {centre - Vector3::Constant(reach), centre + Vector3::Constant(reach)};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/point_sets.hpp"
@@ -23,9 +24,7 @@ using Vector3 = Eigen::Vector3d;
 /// Angle of a triangle at corner k.
 double angle_at(const std::array<Vector3, 3>& corners, int k) {
   const Vector3& at = corners[std::size_t(k)];
-  const Vector3 a = corners[std::size_t((k + 1) % 3)] - at;
-  const Vector3 b = corners[std::size_t((k + 2) % 3)] - at;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return angle_between(corners[std::size_t((k + 1) % 3)] - at, corners[std::size_t((k + 2) % 3)] - at);
 }
 
 }  // namespace

@@ -118,10 +118,7 @@ class FiniteStrainEquations : public NewtonEquations {
   [[nodiscard]] bool accept(const Iteration& iteration, bool may_refuse) override {
     return iterate_.close_balance(solution(), iteration.correction, may_refuse);
   }
-  [[nodiscard]] bool freeze() override {
-    const ContactBoundary& contact = iterate_.task().problem.contact;
-    return contact.follows_motion() && contact.geometry->freeze();
-  }
+  [[nodiscard]] bool freeze() override { return iterate_.task().problem.contact.freeze_pairs(); }
   /// Reactions of the last iteration.
   [[nodiscard]] virtual const StageSolution& solution() const = 0;
 

@@ -57,23 +57,11 @@ void FiniteStrainTangent::add_proximal_terms(const SemidiscreteProblem& problem,
 }
 
 void FiniteStrainTangent::add_contact(const StepIterate& at, const Reactions& reactions, ExactTangent& tangent) {
-  const ContactConditions& conditions = at.stage.conditions;
   const StepStart start{at.state.displacement, at.state.time};
   contact_.differentiate(at.problem, {at.state.displacement, at.end, at.state.time + at.step, &start}, *at.stage.rows,
                          reactions);
-  const std::vector<const Equations*> both{&equation_, &end_equation_};
-  for (const Equations* const equations : both) assembly_.add(contact_.force(), -1.0, *equations, end_);
-  tangent.gap = conditions.gap.offset;
-  tangent.gap_rounding = conditions.gap.rounding;
-  tangent.normal_force = assembly_.forces_of(contact_.normal_rows(), both);
-  tangent.normal_motion = assembly_.motions_of(contact_.gap(), end_, tangent.gap);
   // Slips are those of the whole step.
-  const bool has_friction = conditions.slip.offset.size() > 0;
-  const double scale = has_friction ? 2.0 / conditions.slip.factor : 0.0;
-  tangent.slip = scale * conditions.slip.offset;
-  tangent.slip_rounding = scale * conditions.slip.rounding;
-  tangent.tangential_force = assembly_.forces_of(contact_.tangential_rows(), both);
-  if (has_friction) tangent.tangential_motion = assembly_.motions_of(contact_.slip(), end_, tangent.slip);
+  assembly_.add_contact(contact_, at.stage.conditions, 2.0, {&equation_, &end_equation_}, end_, tangent);
 }
 
 void FiniteStrainTangent::assemble(const StepIterate& at, const Reactions& reactions, double proximal_weight,

@@ -5,18 +5,12 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/base/angles.hpp"
 #include "ricochet/mesh/search/closest_point.hpp"
 
 namespace ricochet {
 
-namespace {
-
-/// Angle between two sides of a triangle.
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& pieces) : plane_(positions.rows() == 2) {
   const std::size_t corners = plane_ ? 2 : 3;

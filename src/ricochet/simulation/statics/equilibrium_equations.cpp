@@ -170,16 +170,7 @@ void ExactEquilibrium::assemble(const Stage& stage) {
   }
   if (problem.contact.size() > 0) {
     contact_.differentiate(problem, {iterate_.origin(), displacement, 0.0}, *stage.rows, iterate_.reactions());
-    assembly_.add(contact_.force(), -1.0, equation_, motions_);
-    tangent_.gap = stage.conditions.gap.offset;
-    tangent_.gap_rounding = stage.conditions.gap.rounding;
-    tangent_.normal_force = assembly_.forces_of(contact_.normal_rows(), {&equation_});
-    tangent_.normal_motion = assembly_.motions_of(contact_.gap(), motions_, tangent_.gap);
-    tangent_.tangential_force = assembly_.forces_of(contact_.tangential_rows(), {&equation_});
-    tangent_.slip = stage.conditions.slip.offset;
-    tangent_.slip_rounding = stage.conditions.slip.rounding;
-    if (tangent_.slip.size() > 0)
-      tangent_.tangential_motion = assembly_.motions_of(contact_.slip(), motions_, tangent_.slip);
+    assembly_.add_contact(contact_, stage.conditions, 1.0, {&equation_}, motions_, tangent_);
   }
   assembly_.write(tangent_);
 }

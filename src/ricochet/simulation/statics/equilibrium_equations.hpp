@@ -68,10 +68,7 @@ class EquilibriumEquations : public NewtonEquations {
   void halve() override { iterate_.halve(); }
   [[nodiscard]] bool has_conditions_on_solution() const override { return settles_; }
   [[nodiscard]] bool accept(const Iteration& iteration, bool may_refuse) override;
-  [[nodiscard]] bool freeze() override {
-    const ContactBoundary& contact = iterate_.problem().contact;
-    return contact.follows_motion() && contact.geometry->freeze();
-  }
+  [[nodiscard]] bool freeze() override { return iterate_.problem().contact.freeze_pairs(); }
   /// Makes iterations go on until the residual of all forces is rounding, and corrections no longer shrink: rounding of
   /// a motion that only contact restrains is amplified by 1/ε, so that the size of the smallest correction is unknown.
   void settle() {
