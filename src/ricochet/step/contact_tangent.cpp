@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ricochet {
 
@@ -109,8 +110,8 @@ void ContactTangent::add_differences(const ContactRows& rows, const Reactions& r
     if (column < 0) continue;
     const auto point = Index(i);
     const double slope = per_width * (forward_.gap[point] - backward_.gap[point]);
-    if (!(std::abs(slope) <= most_steep)) jumps_[i] = 1;
-    if (jumps_[i] != 0) continue;
+    if (!(std::abs(slope) <= most_steep)) keeps_rows_[i] = 1;
+    if (keeps_rows_[i] != 0) continue;
     gap_entries_.emplace_back(int(i), column, slope);
     const TangentVector slip = slip_of(forward_, forward_slip_, i) - slip_of(backward_, backward_slip_, i);
     for (Index k = 0; k < tangents; ++k)
@@ -120,13 +121,22 @@ void ContactTangent::add_differences(const ContactRows& rows, const Reactions& r
   }
 }
 
-void ContactTangent::use_rows_at_jumps(const ContactRows& rows) {
+void ContactTangent::add_kept_rows(const ContactRows& rows) {
   const Index tangents = rows.dimension() - 1;
-  std::erase_if(gap_entries_, [&](const auto& entry) { return jumps_[std::size_t(entry.row())] != 0; });
-  std::erase_if(slip_entries_, [&](const auto& entry) { return jumps_[std::size_t(entry.row() / tangents)] != 0; });
+  std::erase_if(gap_entries_, [&](const auto& entry) { return keeps_rows_[std::size_t(entry.row())] != 0; });
+  std::erase_if(slip_entries_,
+                [&](const auto& entry) { return keeps_rows_[std::size_t(entry.row() / tangents)] != 0; });
   for (Index i = 0; i < rows.size(); ++i) {
-    if (jumps_[std::size_t(i)] != 0) add_rows(rows, i, gap_entries_, slip_entries_);
+    if (keeps_rows_[std::size_t(i)] != 0) add_rows(rows, i, gap_entries_, slip_entries_);
   }
+}
+
+/// Marks the points at which contact does not follow the motion: the geometry leaves their gaps alone.
+void ContactTangent::find_constant_rows(const ContactGeometry& geometry, const ContactPlace& place, Index points) {
+  gap_probe_.setConstant(points, std::numeric_limits<double>::quiet_NaN());
+  geometry.gaps(place.end, place.time, gap_probe_);
+  keeps_rows_.resize(std::size_t(points));
+  for (Index i = 0; i < points; ++i) keeps_rows_[std::size_t(i)] = std::isnan(gap_probe_[i]) ? 1 : 0;
 }
 
 void ContactTangent::differentiate(const SemidiscreteProblem& problem, const ContactPlace& place,
@@ -145,7 +155,7 @@ void ContactTangent::differentiate(const SemidiscreteProblem& problem, const Con
   gap_entries_.clear();
   slip_entries_.clear();
   force_entries_.clear();
-  jumps_.assign(std::size_t(rows.size()), 0);
+  find_constant_rows(geometry, place, rows.size());
   forward_ = backward_ = rows;
   perturbed_ = place.end;
   std::vector<int> column_of(std::size_t(rows.size()));
@@ -166,7 +176,7 @@ void ContactTangent::differentiate(const SemidiscreteProblem& problem, const Con
     }
     add_differences(rows, reactions, column_of, width);
   }
-  use_rows_at_jumps(rows);
+  add_kept_rows(rows);
   geometry.update(place.end, place.time, place.rows_from, forward_);  // what the geometry remembers is that of the end
   assemble(gap_entries_, rows.size(), dofs, gap_);
   assemble(slip_entries_, rows.size() * (rows.dimension() - 1), dofs, slip_);

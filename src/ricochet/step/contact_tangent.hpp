@@ -19,7 +19,8 @@ struct ContactPlace {
 /// Else they are central differences of what ContactGeometry computes, with the error of their width squared: 10⁻¹⁰ for
 /// surfaces that bend over the size of the model, and larger for smaller radii. Displacements are perturbed in groups
 /// of which no contact point sees two, so that the number of evaluations does not grow with the contact. At points
-/// whose gap jumps, because they begin to face something, the derivatives are the rows.
+/// whose gap jumps, because they begin to face something, and at those with constant rows, the derivatives are the
+/// rows.
 class ContactTangent {
  public:
   /// Differentiates at a place, to which `rows` belong. `reactions`: those of which the force is differentiated.
@@ -39,7 +40,8 @@ class ContactTangent {
   using Triplets = std::vector<Eigen::Triplet<double>>;
   void store_rows(const ContactRows& rows, Index dofs);
   void find_groups(const SemidiscreteProblem& problem, const ContactRows& rows);
-  void use_rows_at_jumps(const ContactRows& rows);
+  void find_constant_rows(const ContactGeometry& geometry, const ContactPlace& place, Index points);
+  void add_kept_rows(const ContactRows& rows);
   void add_differences(const ContactRows& rows, const Reactions& reactions, const std::vector<int>& column_of,
                        double width);
 
@@ -49,7 +51,8 @@ class ContactTangent {
   std::vector<std::vector<Index>> groups_;   ///< of dofs
   ContactRows forward_, backward_;
   Vector perturbed_, increment_, forward_slip_, backward_slip_;
-  std::vector<char> jumps_;  ///< per point
+  std::vector<char> keeps_rows_;  ///< per point: whether its derivatives are its rows
+  Vector gap_probe_;
   Triplets gap_entries_, slip_entries_, force_entries_;
 };
 

@@ -74,9 +74,13 @@ std::vector<std::string> surfaces() {
                                   .upper_counts = plane ? std::vector{3, 2} : std::vector{2, 2, 2},
                                   .upper_map = affine_map(0.4 * Matrix::Identity(d, d), place)});
     const std::string file = write_mesh("tangent-" + std::to_string(d) + ".msh", mesh), last = plane ? "y" : "z";
-    result.push_back(case_on(file, "[[contact]]\ngroup = \"upper." + last + "0\"\nagainst = \"lower." + last +
+    // Points with constant rows besides those of surfaces.
+    const std::string floor = std::string("[obstacle.floor]\ntype = \"plane\"\npoint = ") +
+                              (plane ? "[0, 0]\nnormal = [0, 1]" : "[0, 0, 0]\nnormal = [0, 0, 1]") +
+                              "\n[[contact]]\ngroup = \"lower." + last + "0\"\nobstacle = \"floor\"\nfriction = 0.1\n";
+    result.push_back(case_on(file, floor + "[[contact]]\ngroup = \"upper." + last + "0\"\nagainst = \"lower." + last +
                                        "1\"\nmultipliers_on = \"group\"\nsliding = \"large\"\nfriction = 0.1\n"));
-    result.push_back(case_on(file, std::string("[obstacle.ball]\ntype = \"sphere\"\ncentre = ") +
+    result.push_back(case_on(file, floor + std::string("[obstacle.ball]\ntype = \"sphere\"\ncentre = ") +
                                        (plane ? "[0.5, 0.6]" : "[0.5, 0.5, 0.6]") +
                                        "\nradius = 0.5\n[[contact]]\ngroup = \"upper." + last +
                                        "0\"\nobstacle = \"ball\"\nfriction = 0.1\n"));
