@@ -89,6 +89,7 @@ void ContactNewton::solve(NewtonEquations& equations, const NewtonScale& scale, 
 
 void ContactNewton::descend(NewtonEquations& equations, const ProximalThresholds& thresholds) {
   double weight = thresholds.first, last = 0.0;
+  int failures = 0;  // in a row
   for (int iteration = 0; weight > 0.0; ++iteration) {
     if (iteration == thresholds.max_iterations)
       throw Error(ErrorKind::not_converged, fmt::format("no descent to a solution in {} iterations", iteration));
@@ -99,6 +100,7 @@ void ContactNewton::descend(NewtonEquations& equations, const ProximalThresholds
       if (evaluate_with_halving(equations)) correction = std::numeric_limits<double>::infinity();
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged) throw;
+      if (++failures == thresholds.max_failures) throw;
       equations.take_back();
     }
     if (log::enabled(log::Level::debug))
@@ -107,6 +109,7 @@ void ContactNewton::descend(NewtonEquations& equations, const ProximalThresholds
       weight = std::max(thresholds.retry * weight, thresholds.least_after_failure);
       continue;
     }
+    failures = 0;
     const double motion = correction * (1.0 + weight);  // that of the weight zero, roughly
     if (last > 0.0) weight *= std::clamp(motion / last, thresholds.largest_decrease, thresholds.growth);
     last = motion;

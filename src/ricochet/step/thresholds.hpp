@@ -40,6 +40,7 @@ struct ProximalThresholds {
   double least_after_failure = 0.1, retry = 4.0;  ///< θ, and its factor, after an iteration that inverts a cell or has
                                                   ///< no solution
   int max_iterations = 60;
+  int max_failures = 10;  ///< iterations in a row that invert a cell or have no solution
 };
 
 /// Thresholds of iterations of contact conditions that follow the motion (solver/tangent_iterations.hpp).

@@ -36,6 +36,9 @@ constexpr int cold_sweeps = 20;
 constexpr int alternation_limit = 6;
 /// Smallest part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
+/// Residual, relative to the larger one of the data and the first, from which on sweeps diverge: W is not positive
+/// semi-definite.
+constexpr double divergence = 1e6;
 /// Number of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_iterations = 20;
 constexpr double last_work = 2e7;
@@ -108,6 +111,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   ContactIterate on_law_;
   Vector begin_;
   bool stalled_ = false;
+  bool diverges_ = false;  ///< whether the last plain sweeps diverged
   ContactCosts costs_;
 };
 
@@ -178,11 +182,15 @@ bool AutomaticSolver::accelerated(const ContactIteration& iteration) {
 bool AutomaticSolver::sweep(const ContactIteration& iteration, int sweeps, double damping) {
   sweeps_.restart();
   const bool long_run = sweeps > cold_sweeps;
+  const double limit = divergence * std::max(iteration.system.data(), iteration.system.residual(iteration.current));
   int unchanged = 0;
   for (int k = 1; k <= sweeps && unchanged < 2; ++k) {
     const bool changed = sweeps_.sweep(iteration.system, damping, iteration.current);
-    note_iteration(iteration.system, iteration.options, "sweep", iteration.system.residual(iteration.current),
-                   iteration.current.reaction, iteration.solution);
+    const double residual = iteration.system.residual(iteration.current);
+    note_iteration(iteration.system, iteration.options, "sweep", residual, iteration.current.reaction,
+                   iteration.solution);
+    diverges_ = !(residual < limit);
+    if (diverges_) break;
     unchanged = changed || long_run ? 0 : unchanged + 1;
     if (!long_run || k % 16 != 0) continue;
     iteration.system.evaluate(iteration.current);
@@ -215,6 +223,7 @@ bool AutomaticSolver::alternate(const ContactIteration& iteration, int sweeps, d
   double tried = std::numeric_limits<double>::infinity();  // merit from which full steps have failed
   for (int alternation = 1; alternation <= alternation_limit; ++alternation) {
     if (sweeps > 0 && sweep(iteration, sweeps, damping)) return true;
+    if (diverges_) return false;
     if (newton_.run(iteration, true, best_)) return true;
     iteration.current = best_.iterate;
     if (best_.merit < tried) {
@@ -249,6 +258,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
                                      ContactIterate& current, ContactSolution& solution) {
   const ContactIteration iteration{system, options, current, solution};
   // Data of an earlier problem must not decide bits of this one.
+  diverges_ = false;
   sweeps_.restart();
   newton_.start();
   if (!system.has_entries()) return iterate_with_products(iteration);
@@ -321,6 +331,7 @@ bool AutomaticSolver::fall_back(const ContactIteration& iteration, bool was_cold
   if (others_.solve(iteration, OtherSolvers::first, fallback_)) return true;
   iteration.current = fallback_.iterate;
   if (alternate(iteration, cold_sweeps, 1.0)) return true;
+  if (diverges_) return false;
   keep_fallback();
   // Strong friction can make full corrections cycle; parts of them, from zero, then often converge.
   for (double damping = 0.5; damping >= smallest_damping; damping *= 0.5) {
