@@ -149,7 +149,8 @@ StepBalance::Verdict StepBalance::correct_energy(double defect, double dissipati
   // Reactions of the end that act over a step may lose energy, others conserve it.
   const double gained = end_weight_ > 0.0 ? defect : std::abs(defect);
   if (may_open && !is_corrected && gained > thresholds_.near_rounding) return Verdict::open;
-  if (!(std::abs(defect) <= thresholds_.max_corrected) || (!is_corrected && gained > part_ * thresholds_.max_defect))
+  if (!(std::abs(defect) <= part_ * thresholds_.max_corrected) ||
+      (!is_corrected && gained > part_ * thresholds_.max_defect))
     throw Error(ErrorKind::not_converged,
                 fmt::format("the step would {} {:.2g} of the energy, as strains change too much in it",
                             defect > 0.0 ? "create" : "lose", std::abs(defect)));

@@ -23,7 +23,7 @@ struct EnergyThresholds {
   double near_rounding = 1e-12;  ///< admissible defect that they cannot correct, if more iterations do not help
   double max_defect = 1e-8;      ///< largest uncorrected defect of a full step; of a part in proportion to its length
   double min_part = 0.1;         ///< least part of a full step that counts in this proportion
-  double max_corrected = 1e-2;   ///< largest defect that velocities correct
+  double max_corrected = 1e-3;   ///< largest defect that velocities correct
 };
 
 /// Solution of the equations of a step. Vectors are per dof.
