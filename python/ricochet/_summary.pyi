@@ -305,6 +305,7 @@ class Summary(TypedDict):
     expectations: list[Expectation]
     parameters: dict[str, str]
     unwatched_penetration: PenetrationReport
+    distortion_energy: Real
     bodies: list[Body]
     impacts: list[Impact]
     impacts_left_out: int

@@ -13,19 +13,23 @@ class Warnings(TestCase):
         output = self.simulate(self.write("case.toml", text), values=values, options=("--quiet", "--force"))
         return summary_of(output)["warnings"]
 
-    def test_cells_turned_inside_out_at_a_vertex(self):
-        """With u = a x² the volume is 1 + 2a at x = 1, and 0.024 at the nearest quadrature point for a = -0.55."""
+    def test_distorted_cells(self):
+        """With u = a x² the volume is 1 + 2ax. The nodes at x = 1 are represented by points at 0.995."""
         self.write("cell.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 1 \"bottom\"\n2 2 \"body\"\n"
                    "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n2\n"
                    "1 1 2 1 1 1 2\n2 3 2 2 1 1 2 3 4\n$EndElements\n")
         text = ('[mesh]\nfile = "cell.msh"\ndegree = 2\nplane = "strain"\n[[material]]\ngroup = "body"\ndensity = 1.0\nyoung = 1.0\n'
                 'poisson = 0.3\nlaw = "neo-hookean"\n[mass]\ntype = "consistent"\n[initial]\ndisplacement = ["{}*x^2", "0"]\n'
                 '[time]\nscheme = "hht-alpha"\nstep = 1e-6\nend = 2e-6\n')
-        for part, volume in ((-0.55, -0.1), (-0.45, None)):
-            told = [line for line in self.warnings_of(text.format(part)) if "turned inside out" in line]
-            self.assertEqual(len(told), 0 if volume is None else 1, told)
-            if volume is not None:
-                self.assertRegex(told[0], r"at t = 0 cell 2 at \(0.5, 0.5\) is turned inside out at a vertex, where its volume is -0.1")
+        for part, has_energy in ((-0.45, True), (-0.35, False)):
+            told = [line for line in self.warnings_of(text.format(part)) if "artificial energy" in line]
+            self.assertEqual(len(told), 1 if has_energy else 0, told)
+            if has_energy:
+                self.assertRegex(told[0], r"at t = 0 the volume of cell 2 at \(0.5, 0.5\) is 0.104 times that at rest near")
+        for part, volume in ((-0.55, "-0.0945"), (-0.7, "-0.242")):
+            refused = self.expect_status(2, run("run", self.write("case.toml", text.format(part)), "-o", self.folder / "refused"))
+            self.assertIn(f"initial.displacement: cell 2 at (0.5, 0.5) is inverted: somewhere in it the volume is {volume} times",
+                          refused.stderr)
 
     def test_supports_whose_velocity_jumps(self):
         ramp, smooth = "-0.01*min(t/0.1, 1)", "-0.005*(1-cos(pi*min(t/0.1, 1)))"

@@ -23,7 +23,10 @@ struct BlockIntegration {
 
   BlockIntegration(CellShape shape, int geometry_degree, int displacement_degree, int quadrature_degree,
                    bool is_of_rings = false)
-      : rule(quadrature(shape, quadrature_degree)),
+      : BlockIntegration(quadrature(shape, quadrature_degree), shape, geometry_degree, displacement_degree,
+                         is_of_rings) {}
+  BlockIntegration(QuadratureRule of, CellShape shape, int geometry_degree, int displacement_degree, bool is_of_rings)
+      : rule(std::move(of)),
         geometry(ReferenceElement::get(shape, geometry_degree).tabulate(rule.points)),
         displacement(ReferenceElement::get(shape, displacement_degree).tabulate(rule.points)),
         axisymmetric(is_of_rings) {}
@@ -64,6 +67,19 @@ struct BlockIntegration {
                                                             int displacement_degree, bool axisymmetric = false) {
   return {shape, geometry_degree, displacement_degree,
           stiffness_quadrature_degree(shape, geometry_degree, displacement_degree, axisymmetric), axisymmetric};
+}
+
+/// Sum over points close to the nodes of the displacement (not on the axis of an axisymmetric body), with equal
+/// weights.
+[[nodiscard]] inline BlockIntegration nodal_integration(CellShape shape, int geometry_degree, int displacement_degree,
+                                                        bool axisymmetric = false) {
+  constexpr double nearness = 0.99;
+  const Points& nodes = ReferenceElement::get(shape, displacement_degree).nodes();
+  const Vector centre = reference_centre(shape);
+  const double weight = quadrature(shape, 0).weights.sum() / double(nodes.cols());
+  QuadratureRule rule{(nearness * (nodes.colwise() - centre)).colwise() + centre,
+                      Vector::Constant(nodes.cols(), weight)};
+  return {std::move(rule), shape, geometry_degree, displacement_degree, axisymmetric};
 }
 
 /// Jacobian ∂x/∂ξ of the map of a cell: rows are components of x, columns reference directions.

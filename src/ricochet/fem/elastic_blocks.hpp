@@ -23,8 +23,10 @@ struct ElasticCells::Blocks {
   mutable PackNumbers numbers;
   mutable std::vector<std::vector<BranchNumbers>> branches;  ///< per material, over a step
 
-  Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
-    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
+  Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells, CellPoints points)
+      : body(of), packs(of, graph, cells) {
+    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b)
+      all.push_back(make(body.mesh->cells[b], packs.lanes(b), points));
     numbers.displacement = packs.template storage<d>();
     if (graph == nullptr) return;  // energies only, neither forces nor branches
     numbers.increment = numbers.force = numbers.displacement;
@@ -51,9 +53,9 @@ struct ElasticCells::Blocks {
   }
 
  private:
-  [[nodiscard]] KernelBlock<d> make(const CellBlock& cells, const std::vector<int>& lanes) const {
-    KernelBlock<d> block{
-        stiffness_integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
+  [[nodiscard]] KernelBlock<d> make(const CellBlock& cells, const std::vector<int>& lanes, CellPoints points) const {
+    const auto integration = points == CellPoints::nodes ? nodal_integration : stiffness_integration;
+    KernelBlock<d> block{integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
     const bool simplex = is_simplex(cells.shape);
     block.affine = simplex && body.mesh->degree == 1;
     block.points = int(block.integration.rule.weights.size());
@@ -76,6 +78,7 @@ struct ElasticCells::Blocks {
         const Index cell = lanes[lanes[index] < 0 ? pack * std::size_t(block.width) : index];
         if (lanes[index] >= 0) block.lane[std::size_t(cell)] = int(index);
         measure(cells.cell(cell), Index(pack), k, block);
+        if (points == CellPoints::nodes) share_weight(Index(pack), k, block);
       }
     }
     if (!simplex || body.space->degree > 1) block.dilatation_functions = dilatation_functions(cells.shape, block);
@@ -96,6 +99,13 @@ struct ElasticCells::Blocks {
         for (int j = 0; j < d; ++j, at += std::size_t(block.width)) block.inverse[at] = inverse(i, j);
       }
     }
+  }
+  /// Gives all points of a cell the same weight, also those close to an axis.
+  void share_weight(Index pack, int lane, KernelBlock<d>& block) const {
+    const auto at = [&](int q) -> double& { return block.weight[std::size_t(block.index(pack, q) + lane)]; };
+    double sum = 0.0;
+    for (int q = 0; q < block.points; ++q) sum += at(q);
+    for (int q = 0; q < block.points; ++q) at(q) = sum / block.points;
   }
   /// Constant on simplices and with degree 1, else linear. (Linear ones are unstable on triangles of degree 2.)
   [[nodiscard]] Matrix dilatation_functions(CellShape shape, const KernelBlock<d>& block) const {

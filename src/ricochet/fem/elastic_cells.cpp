@@ -6,10 +6,10 @@ namespace ricochet {
 
 ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph) : ElasticCells(body, graph, {}) {}
 
-ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells)
+ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells, CellPoints points)
     : body_(body), graph_(graph), cells_(std::move(cells)) {
-  if (body.mesh->dimension == 2) plane_ = std::make_unique<Blocks<2>>(body, graph, cells_);
-  if (body.mesh->dimension == 3) solid_ = std::make_unique<Blocks<3>>(body, graph, cells_);
+  if (body.mesh->dimension == 2) plane_ = std::make_unique<Blocks<2>>(body, graph, cells_, points);
+  if (body.mesh->dimension == 3) solid_ = std::make_unique<Blocks<3>>(body, graph, cells_, points);
   find_internal_offsets();
 }
 

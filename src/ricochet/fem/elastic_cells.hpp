@@ -21,8 +21,9 @@
 /// The quadrature is that of the stiffness, so that small displacements produce the forces of the linear body.
 namespace ricochet {
 
-/// Cell whose volume is not positive at some point, or whose thickness is undefined.
-struct InvertedCell {
+/// Smallest volume ratio at the points of some cells: not positive where a cell is inverted, −∞ where the thickness of
+/// a plate is undefined.
+struct CellVolume {
   Index cell = -1;  ///< numbered through all blocks; −1 if none
   double volume_ratio = 1.0;
 };
@@ -39,23 +40,29 @@ struct BranchStep {
 
 enum class BranchStress;
 
+/// Points at which the energy of a cell is evaluated: those of the quadrature of the stiffness, or close to its nodes.
+enum class CellPoints { quadrature, nodes };
+
 class ElasticCells {
  public:
   /// Keeps references. Without a graph only energies of the laws are available: no force, no tangent, no branch.
   explicit ElasticCells(const Body& body, const NodeGraph* graph = nullptr);
   /// Restricts the sums to some cells, ascending, which must be those of the graph.
-  ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells);
+  ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells,
+               CellPoints points = CellPoints::quadrature);
   ~ElasticCells();
   ElasticCells(const ElasticCells&) = delete;
   ElasticCells& operator=(const ElasticCells&) = delete;
 
+  /// Returns the smallest ratio of all cells, if it is below 1.
+  [[nodiscard]] CellVolume smallest_volume(const Vector& displacement) const;
   /// Computes the force per dof. If a cell is inverted the force is meaningless; that cell is returned.
-  [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
+  [[nodiscard]] CellVolume force(const Vector& displacement, Vector& result) const;
   /// Computes the forces at a displacement `middle` of the mean stress S̄ along the path of the strain from that of
   /// `middle` − ½ `increment` to that of `middle` + ½ `increment` (strain_path.hpp): their work on the increment is the
   /// change of the energy up to the error of the rule, and a rigid motion has none.
-  [[nodiscard]] InvertedCell path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
-                                        Vector& result) const;
+  [[nodiscard]] CellVolume path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                      Vector& result) const;
   /// Returns a ∂D/∂x + b ∂D/∂Δ̂ of the force D(x, Δ̂) of path_force(), with x = `middle`, Δ̂ = `increment`, and a and b
   /// of the `variation`: in general not symmetric, on the pattern of the graph. At Δ̂ = 0 it is a times the tangent.
   /// (cell_path_kernel.hpp has the formulas.) It is assembled cell by cell, which takes 1.3 to 2.7 times as long as
@@ -120,8 +127,8 @@ class ElasticCells {
   struct PackSum;
   struct PackPart;
   template <template <int> class Strips, class Work>
-  InvertedCell visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
-                            const Work& work) const;
+  CellVolume visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
+                          const Work& work) const;
   [[nodiscard]] SparseMatrix assemble_path_tangent(const Vector& middle, const Vector& increment,
                                                    const PathRules& rules, const PathVariation& variation,
                                                    const BranchStep* step) const;

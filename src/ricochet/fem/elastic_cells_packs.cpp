@@ -3,11 +3,18 @@
 /// @file Forces and energies of all cells, pack by pack.
 namespace ricochet {
 
-InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
+CellVolume ElasticCells::force(const Vector& displacement, Vector& result) const {
   return visit_strips<StripWork>({{displacement, &PackNumbers::displacement}}, {{&PackNumbers::force, result}},
                                  [](auto& strips, const auto& strip, const PackPart& part) {
                                    strips.find_strains(strip, part.at(&PackNumbers::displacement), part.worst);
                                    strips.add_forces(strip, part.at(&PackNumbers::force));
+                                 });
+}
+
+CellVolume ElasticCells::smallest_volume(const Vector& displacement) const {
+  return visit_strips<StripWork>({{displacement, &PackNumbers::displacement}}, {},
+                                 [](auto& strips, const auto& strip, const PackPart& part) {
+                                   strips.find_smallest(strip, part.at(&PackNumbers::displacement), part.worst);
                                  });
 }
 
@@ -16,7 +23,7 @@ double ElasticCells::energy(const Vector& displacement) const {
   std::array<double, most_node_parts> sums{};
   visit_strips<StripWork>({{displacement, &PackNumbers::displacement}}, {},
                           [&](auto& strips, const auto& strip, const PackPart& part) {
-                            InvertedCell inverted;
+                            CellVolume inverted;
                             strips.find_strains(strip, part.at(&PackNumbers::displacement), inverted);
                             sums[std::size_t(part.part)] +=
                                 inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);

@@ -11,7 +11,7 @@ class ElasticCells::PathWork : public StripWork<d> {
   using StripWork<d>::StripWork;
 
   /// Computes Ē and ΔE from the numbers of a part. Updates `worst` if a cell is inverted at the middle.
-  void find_path(const PackStrip<d>& strip, const double* middle, const double* increments, InvertedCell& worst) {
+  void find_path(const PackStrip<d>& strip, const double* middle, const double* increments, CellVolume& worst) {
     const bool is_linear = this->law().is_linear();
     find_gradients(strip, middle, gradients_.data());
     find_gradients(strip, increments, increments_.data());
@@ -24,7 +24,7 @@ class ElasticCells::PathWork : public StripWork<d> {
   }
 
   /// Adds the forces of S̄ after find_path(), with the rules of all cells.
-  void add_path_forces(const PackStrip<d>& strip, const PathRules& rules, double* forces, InvertedCell& worst) {
+  void add_path_forces(const PackStrip<d>& strip, const PathRules& rules, double* forces, CellVolume& worst) {
     if (this->law().is_linear()) return this->add_forces(strip, forces);
     const bool any_exact = read_rules(strip, rules);
     std::fill_n(sums_.data(), numbers(strip), 0.0);
@@ -92,7 +92,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     });
   }
   /// Computes the strains at τ. All volumes are positive there, but under plane stress there may be no thickness.
-  void go_to(const PackStrip<d>& strip, double tau, InvertedCell& worst) {
+  void go_to(const PackStrip<d>& strip, double tau, CellVolume& worst) {
     move_along<d>(strip.points(), means_.data(), changes_.data(), tau, strains_.data());
     this->complete(strip, true, worst);
   }
@@ -100,7 +100,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     return uses_[std::size_t(each.rule)] && each.points == gauss.count;
   }
   /// Adds the stresses at the points of a Gauss rule to S̄ of the cells that use it.
-  void add_stresses(const PackStrip<d>& strip, const PathGaussRule& gauss, InvertedCell& worst) {
+  void add_stresses(const PackStrip<d>& strip, const PathGaussRule& gauss, CellVolume& worst) {
     for (std::size_t q = 0; q < std::size_t(gauss.count); ++q) {
       go_to(strip, gauss.points[q], worst);
       this->find_stresses(strip);
@@ -111,7 +111,7 @@ class ElasticCells::PathWork : public StripWork<d> {
     }
   }
   /// Adds c ΔE to S̄ of the cells whose work is made exact.
-  void make_work_exact(const PackStrip<d>& strip, InvertedCell& worst) {
+  void make_work_exact(const PackStrip<d>& strip, CellVolume& worst) {
     go_to(strip, 0.5, worst);
     this->find_energies(strip, ends_.data());
     go_to(strip, -0.5, worst);
@@ -142,8 +142,8 @@ class ElasticCells::PathWork : public StripWork<d> {
   std::array<bool, path_rule_table.size()> uses_{};  ///< whether a rule occurs in the strip
 };
 
-InvertedCell ElasticCells::path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
-                                      Vector& result) const {
+CellVolume ElasticCells::path_force(const Vector& middle, const Vector& increment, const PathRules& rules,
+                                    Vector& result) const {
   return visit_strips<PathWork>(
       {{middle, &PackNumbers::displacement}, {increment, &PackNumbers::increment}}, {{&PackNumbers::force, result}},
       [&](auto& strips, const auto& strip, const PackPart& part) {

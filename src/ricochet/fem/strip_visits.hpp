@@ -5,12 +5,12 @@
 /// @file Visits of all strips of a body. Not part of the public interface.
 namespace ricochet {
 
-using PartCells = std::array<InvertedCell, most_node_parts>;
+using PartCells = std::array<CellVolume, most_node_parts>;
 
 /// Worst cell of all parts, compared in their order.
-inline InvertedCell worst_of(const PartCells& parts) {
-  InvertedCell all;
-  for (const InvertedCell& each : parts) {
+inline CellVolume worst_of(const PartCells& parts) {
+  CellVolume all;
+  for (const CellVolume& each : parts) {
     if (each.cell >= 0) worse(all, each.cell, each.volume_ratio);
   }
   return all;
@@ -32,7 +32,7 @@ struct ElasticCells::PackSum {
 struct ElasticCells::PackPart {
   PackNumbers& numbers;
   Index part, begin;
-  InvertedCell& worst;
+  CellVolume& worst;
 
   [[nodiscard]] double* at(std::vector<double> PackNumbers::*of) const { return (numbers.*of).data() + begin; }
 };
@@ -40,8 +40,8 @@ struct ElasticCells::PackPart {
 /// Calls work(strips, strip, part) for all strips, several parts at once; returns the worst cell. `Strips`: StripWork
 /// or derived from it.
 template <template <int> class Strips, class Work>
-InvertedCell ElasticCells::visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
-                                        const Work& work) const {
+CellVolume ElasticCells::visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
+                                      const Work& work) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();

@@ -9,7 +9,7 @@
 namespace ricochet {
 
 /// Updates the worst cell of a part; parts are compared in their order.
-inline void worse(InvertedCell& worst, Index cell, double ratio) {
+inline void worse(CellVolume& worst, Index cell, double ratio) {
   if (ratio < worst.volume_ratio) worst = {cell, ratio};
 }
 
@@ -33,11 +33,16 @@ class ElasticCells::StripWork : public CellStrips<d> {
   }
 
   /// Computes H and E from the numbers of a part. Updates `worst` if a cell is inverted.
-  void find_strains(const PackStrip<d>& strip, const double* numbers, InvertedCell& worst) {
+  void find_strains(const PackStrip<d>& strip, const double* numbers, CellVolume& worst) {
     find_gradients(strip, numbers, gradients_.data());
     const bool upright =
         ricochet::find_strains<d>(strip.points(), law_->is_linear(), gradients_.data(), nullptr, strains_.data());
     complete(strip, upright, worst);
+  }
+  /// Updates `smallest` with the volume ratios of all cells.
+  void find_smallest(const PackStrip<d>& strip, const double* numbers, CellVolume& smallest) {
+    find_gradients(strip, numbers, gradients_.data());
+    find_worst(strip, smallest, std::numeric_limits<double>::infinity());
   }
   void add_forces(const PackStrip<d>& strip, double* forces) {
     find_stresses(strip);
@@ -64,7 +69,7 @@ class ElasticCells::StripWork : public CellStrips<d> {
     if (mean_modulus_ > 0.0) add_mean_energies(strip, mean_modulus_, strains_.data(), energies);
   }
   /// Completes strains under plane stress, and updates `worst` unless all cells of the strip are upright.
-  void complete(const PackStrip<d>& strip, bool upright, InvertedCell& worst) {
+  void complete(const PackStrip<d>& strip, bool upright, CellVolume& worst) {
     if (law_->is_plane_stress()) solve_plane_stress(strip);
     if (law_->is_linear()) return;
     if (law_->is_plane_stress()) upright = false;  // whether the thickness is defined is not known yet
@@ -96,7 +101,8 @@ class ElasticCells::StripWork : public CellStrips<d> {
       }
     });
   }
-  void find_worst(const PackStrip<d>& strip, InvertedCell& worst) {
+  /// Updates `worst` with the ratios that are not above a limit.
+  void find_worst(const PackStrip<d>& strip, CellVolume& worst, double limit = 0.0) {
     const int width = strip.block.width;
     this->for_each_lane(strip, [&](Index, int lane, Index first, int cell) {
       double least = 1.0;
@@ -109,7 +115,7 @@ class ElasticCells::StripWork : public CellStrips<d> {
         const double volume = determinant(deformation);
         if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
       }
-      if (!(least > 0.0)) worse(worst, cell + this->first_cell(), least);
+      if (!(least > limit)) worse(worst, cell + this->first_cell(), least);
     });
   }
 

@@ -171,6 +171,7 @@ struct RunSummary {
   std::optional<PeakStressDescription> peak_stress;
   MethodEnergy method_energy = {};
   std::optional<ActingReactions> reactions = {};                 ///< null: scheme without a choice
+  double distortion_energy = 0.0;                                ///< largest energy of the control of distorted cells
   std::optional<VelocityCorrections> velocity_corrections = {};  ///< null: scheme or law without them
   RotationReport rotation = {};
   std::vector<PairSliding> sliding = {};         ///< per contact between bodies

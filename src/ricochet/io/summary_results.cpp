@@ -246,6 +246,8 @@ void describe(SummaryVisitor& visit, PeakStressDescription& stress) {
 
 void describe_results(SummaryVisitor& visit, RunSummary& run) {
   visit("unwatched_penetration", run.penetration, "penetration that no contact prevents");
+  visit("distortion_energy", Real{run.distortion_energy},
+        "largest artificial energy that has kept cells from being turned inside out; 0: none was needed");
   visit("bodies", run.bodies, "bodies of the mesh, from the mass matrix of the run");
   visit("impacts", run.impacts, "collisions of each body with each obstacle and of each two bodies, by their begin");
   visit("impacts_left_out", run.impacts_left_out, "number of later impacts, which are only counted");

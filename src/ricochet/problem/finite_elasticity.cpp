@@ -9,10 +9,16 @@
 namespace ricochet {
 
 FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph)
-    : body_(body), graph_(std::move(graph)), cells_(body, &graph_) {}
+    : FiniteElasticity(body, std::move(graph), {}, std::make_shared<bool>(false)) {}
 
-FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells)
-    : body_(body), graph_(std::move(graph)), cells_(body, &graph_, std::move(cells)) {}
+FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells,
+                                   std::shared_ptr<bool> controls_distortion)
+    : body_(body),
+      graph_(std::move(graph)),
+      cells_(body, &graph_, cells),
+      controls_distortion_(std::move(controls_distortion)) {
+  if (DistortionControl::applies_to(body)) control_.emplace(body, graph_, cells);
+}
 
 /// Includes the nodes that are tied to the requested ones.
 std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::vector<char>& nodes) const {
@@ -28,7 +34,7 @@ std::shared_ptr<const InternalForce> FiniteElasticity::restricted_to(const std::
   std::vector<int> cells = graph.cells;
   std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return std::make_shared<FiniteElasticity>(body_, std::move(graph), std::move(cells));
+  return std::make_shared<FiniteElasticity>(body_, std::move(graph), std::move(cells), controls_distortion_);
 }
 
 const Vector& FiniteElasticity::complete(const Vector& values, Vector& memory) const {
@@ -42,16 +48,18 @@ void FiniteElasticity::condense(Vector& force) const {
   if (body_.tied != nullptr && !body_.tied->empty()) body_.tied->condense_load(force, body_.mesh->dimension);
 }
 
-void FiniteElasticity::require_positive_volume(const InvertedCell& inverted) const {
-  if (inverted.cell < 0) return;
-  const CellLocation location = location_of_cell(*body_.mesh, inverted.cell);
+void FiniteElasticity::require_positive_volume(const CellVolume& smallest) const {
+  if (smallest.volume_ratio > 0.0) return;
+  const CellLocation location = location_of_cell(*body_.mesh, smallest.cell);
   throw Error(ErrorKind::not_converged,
               fmt::format("cell {} at ({:.6g}) is inverted: somewhere in it the volume is {:.3g} times that at rest",
-                          location.tag, fmt::join(location.centre, ", "), inverted.volume_ratio));
+                          location.tag, fmt::join(location.centre, ", "), smallest.volume_ratio));
 }
 
 void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {
-  require_positive_volume(cells_.force(complete(displacement, displacement_), force));
+  const Vector& completed = complete(displacement, displacement_);
+  require_positive_volume(cells_.force(completed, force));
+  if (control() != nullptr) require_positive_volume(control()->add_force(completed, force));
   condense(force);
 }
 
@@ -59,6 +67,9 @@ void FiniteElasticity::path_force(const Vector& middle, const Vector& increment,
                                   Vector& force) const {
   require_positive_volume(
       cells_.path_force(complete(middle, displacement_), complete(increment, increment_), rules, force));
+  if (control() != nullptr)
+    require_positive_volume(
+        control()->add_path_force(complete(middle, displacement_), complete(increment, increment_), force));
   condense(force);
 }
 
@@ -69,8 +80,10 @@ SparseMatrix FiniteElasticity::condensed(SparseMatrix general) const {
 
 SparseMatrix FiniteElasticity::path_tangent(const Vector& middle, const Vector& increment, const PathRules& rules,
                                             const PathVariation& variation) const {
-  return condensed(
-      cells_.path_tangent(complete(middle, displacement_), complete(increment, increment_), rules, variation));
+  const Vector &at = complete(middle, displacement_), &change = complete(increment, increment_);
+  SparseMatrix result = cells_.path_tangent(at, change, rules, variation);
+  if (control() != nullptr) control()->add_path_tangent(at, change, variation, result);
+  return condensed(std::move(result));
 }
 
 double FiniteElasticity::estimated_seconds() const {
@@ -87,20 +100,34 @@ bool FiniteElasticity::raise_path_rules(const Vector& middle, const Vector& incr
 }
 
 double FiniteElasticity::energy(const Vector& displacement) const {
-  return cells_.energy(complete(displacement, displacement_));
+  const Vector& completed = complete(displacement, displacement_);
+  return cells_.energy(completed) + (control() != nullptr ? control()->energy(completed) : 0.0);
+}
+
+CellVolume FiniteElasticity::smallest_nodal_volume(const Vector& displacement) const {
+  return control_->smallest_volume(complete(displacement, displacement_));
+}
+
+double FiniteElasticity::distortion_energy(const Vector& displacement) const {
+  return control() != nullptr ? control()->energy(complete(displacement, displacement_)) : 0.0;
 }
 
 SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const { return step_tangent(displacement, 0.0); }
 
 SparseMatrix FiniteElasticity::step_tangent(const Vector& displacement, double step) const {
-  SparseMatrix result = cells_.tangent(complete(displacement, displacement_), step);
+  const Vector& completed = complete(displacement, displacement_);
+  SparseMatrix result = cells_.tangent(completed, step);
+  if (control() != nullptr && completed.size() > 0) control()->add_tangent(completed, result);
   if (body_.tied == nullptr || body_.tied->empty()) return result;
   return body_.tied->condense(result, body_.mesh->dimension);
 }
 
 SparseMatrix FiniteElasticity::step_path_tangent(const BranchStep& step, const PathRules& rules,
                                                  const PathVariation& variation) const {
-  return condensed(cells_.path_tangent(complete(step), rules, variation));
+  const BranchStep completed = complete(step);
+  SparseMatrix result = cells_.path_tangent(completed, rules, variation);
+  if (control() != nullptr) control()->add_path_tangent(completed.middle, completed.increment, variation, result);
+  return condensed(std::move(result));
 }
 
 BranchStep FiniteElasticity::complete(const BranchStep& step) const {

@@ -28,6 +28,7 @@ class GroundSprings final : public InternalForce {
   }
   void add_ground_force(const Vector& displacement, Vector& force) const override { add(displacement, force); }
   [[nodiscard]] const ViscousForce* viscous() const override { return bodies_->viscous(); }
+  [[nodiscard]] const DistortionForce* distortion() const override { return bodies_->distortion(); }
   [[nodiscard]] bool is_linear() const override { return bodies_->is_linear(); }
   [[nodiscard]] double energy_terms(const Vector& displacement) const override {
     return bodies_->energy_terms(displacement) + 2.0 * own_energy(displacement);

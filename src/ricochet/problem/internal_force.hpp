@@ -15,6 +15,7 @@
 namespace ricochet {
 
 class ViscousForce;
+class DistortionForce;
 
 class InternalForce {
  public:
@@ -50,6 +51,8 @@ class InternalForce {
   virtual void add_ground_force(const Vector& /*displacement*/, Vector& /*force*/) const {}
   /// Viscoelastic branches (viscous_force.hpp), excluded from every other function here; null if none.
   [[nodiscard]] virtual const ViscousForce* viscous() const { return nullptr; }
+  /// Control of distorted cells (distortion_force.hpp); null if no cell can be inverted between its quadrature points.
+  [[nodiscard]] virtual const DistortionForce* distortion() const { return nullptr; }
   /// Whether the force is a linear function of U, so that the tangent is constant. Code that relies on it checks it
   /// (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;

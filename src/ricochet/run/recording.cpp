@@ -89,7 +89,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, *model.problem.ranks, column_index(recorder_.columns(), "max_rotation")),
-      inversion_(model.body, *model.problem.ranks),
+      distortion_(model.body, model.problem),
       method_(scheme.traits_for(model.problem).acting_reactions, *model.problem.ranks,
               scheme.traits().corrects_velocities && has_finite_strain(model.body)),
       history_every_(input.output.history_every.value_or(scheme.traits().history_every)) {
@@ -112,7 +112,7 @@ void Recording::persist(const SnapshotVisitor& visit) {
   sliding_.persist(visit.part("sliding"));
   late_.persist(visit.part("late_contact"));
   rotation_.persist(visit.part("rotation"));
-  inversion_.persist(visit.part("inversion"));
+  distortion_.persist(visit.part("distortion"));
   method_.persist(visit.part("method"));
 }
 
@@ -177,7 +177,7 @@ void Recording::write_row(const State& state, EnergyAccount& account) {
   });
   digest_.add(row);
   rotation_.watch(row, state);
-  inversion_.watch(row[1], state);
+  distortion_.watch(row[1], state);
   checks_.watch(row, state);
 }
 
@@ -223,6 +223,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.method_energy = method_.energy(summary.energy_scale());
   summary.reactions = method_.reactions();
   summary.velocity_corrections = method_.velocity_corrections();
+  summary.distortion_energy = distortion_.largest_energy();
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();

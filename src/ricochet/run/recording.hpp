@@ -7,8 +7,8 @@
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/distortion_watch.hpp"
 #include "ricochet/run/field_schedule.hpp"
-#include "ricochet/run/inversion_watch.hpp"
 #include "ricochet/run/method_watch.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_checks.hpp"
@@ -83,7 +83,7 @@ class Recording {
   SlidingWatch sliding_;
   LateContactWatch late_;
   RotationWatch rotation_;
-  InversionWatch inversion_;
+  DistortionWatch distortion_;
   MethodWatch method_;
   long history_every_;
   Timer since_flush_;

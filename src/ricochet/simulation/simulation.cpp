@@ -7,6 +7,8 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/fem/distortion_law.hpp"
+#include "ricochet/problem/distortion_force.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/requirements.hpp"
 
@@ -44,6 +46,8 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
+  control_distortion();
+  require_upright_start();
   if (control_) {
     control_->start(state_);
     scheme_.change_step(problem_, control_->step());
@@ -64,6 +68,16 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   set_up_tunnelling_watches();
 }
 
+void Simulation::require_upright_start() const {
+  if (std::isfinite(problem_.internal_force->energy(state_.displacement))) return;
+  try {
+    Vector force;
+    problem_.internal_force->evaluate(state_.displacement, force);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::invalid_input, fmt::format("initial.displacement: {}", error.what()));
+  }
+}
+
 void Simulation::save(Snapshot& snapshot) {
   const SnapshotVisitor visit = snapshot.saver("");
   persist(visit);
@@ -74,7 +88,10 @@ void Simulation::persist(const SnapshotVisitor& visit) {
   const SnapshotVisitor bodies = visit.part("free_body");
   for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k) problem_.free_bodies[k]->persist(bodies.part(k));
   ricochet::persist(visit.part("state"), problem_, state_);
-  if (visit.loads()) scheme_.analyse(problem_);
+  if (visit.loads()) {
+    control_distortion();
+    scheme_.analyse(problem_);
+  }
   if (control_) control_->persist(visit.part("control"));
   visit("cut_steps", cut_steps_);
   visit("told_short_parts", short_parts_warned_);
@@ -202,12 +219,33 @@ void Simulation::set_up_tunnelling_watches() {
   has_guards_ = problem_.ranks->any(!guards_.empty());
 }
 
+/// Whether some volume ratio at the nodes of cells is below a limit.
+bool Simulation::is_distorted(double limit) const {
+  const CellVolume smallest = problem_.internal_force->distortion()->smallest_nodal_volume(state_.displacement);
+  return problem_.ranks->any(smallest.volume_ratio < limit);
+}
+
+/// Includes the control of distorted cells in the step if some are distorted at its start. Returns whether it may be
+/// missing at the end.
+bool Simulation::control_distortion() const {
+  const DistortionForce* const distortion = problem_.internal_force->distortion();
+  if (distortion == nullptr) return false;
+  const bool is_on = is_distorted(distortion_watch_ratio);
+  distortion->control_distortion(is_on);
+  return !is_on;
+}
+
 /// Refuses a step in which a node goes through an obstacle, if the step can be shorter.
 void Simulation::take_step(bool is_shortest) {
   has_tunnelled_ = false;
-  const bool is_guarded = has_guards_ && !is_shortest;
-  if (is_guarded) unguarded_ = state_;
+  const bool is_guarded = has_guards_ && !is_shortest, may_distort = control_distortion();
+  if (is_guarded || may_distort) unguarded_ = state_;
   solve_step();
+  if (may_distort && is_distorted(distortion_volume_ratio)) {
+    state_ = unguarded_;
+    problem_.internal_force->distortion()->control_distortion(true);
+    solve_step();
+  }
   const double end = state_.time + scheme_.step();
   const auto passes = [&](const TunnellingWatch& guard) { return guard.any_tunnels(state_, end); };
   if (!is_guarded || !problem_.ranks->any(std::ranges::any_of(guards_, passes))) return;

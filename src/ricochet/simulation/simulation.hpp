@@ -80,6 +80,10 @@ class Simulation : private StageSolve {
   void use_level(int level);
   void set_up_tunnelling_watches();
   void take_step(bool is_shortest);
+  /// Throws Error(invalid_input) if initial displacements turn a cell inside out.
+  void require_upright_start() const;
+  [[nodiscard]] bool is_distorted(double limit) const;
+  bool control_distortion() const;
   void solve_step();
   void attempt_step();
   [[nodiscard]] const char* failure_reason() const;
@@ -123,7 +127,7 @@ class Simulation : private StageSolve {
   bool short_parts_warned_ = false;
   std::vector<TunnellingWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
   bool has_guards_ = false;              ///< on this or another rank
-  State unguarded_;                      ///< state at the start of a step, with guards
+  State unguarded_;                      ///< state at the start of a step that may be refused
   bool has_tunnelled_ = false;           ///< true if the last attempt was refused for tunnelling
   State state_before_attempt_;           ///< state before an attempt, with control
   std::unique_ptr<EnergyAccount> account_;

@@ -144,7 +144,7 @@ TEST(CellPacks, OfAllCellsThatAreTurnedInsideOutTheWorstIsNamed) {
   Vector u = Vector::Zero(test.body->space.dof_count()), force;
   const Index node = test.body->space.node_count() / 2;
   u[2 * node] = 0.3;
-  const InvertedCell found = cells.force(u, force);
+  const CellVolume found = cells.force(u, force);
   EXPECT_LT(found.volume_ratio, 0.0);
   ASSERT_GE(found.cell, 0);
   const Index* const nodes = test.body->space.cells[0].cell(found.cell);

@@ -59,6 +59,7 @@ export interface Summary {
   expectations: Expectation[]; // entries of `[[expect]]`, in the order of the case
   parameters: Record<string, string>; // all entries of the case by key path, defaults included, as texts
   unwatched_penetration: PenetrationReport; // penetration that no contact prevents
+  distortion_energy: Real; // largest artificial energy that has kept cells from being turned inside out; 0: none was needed
   bodies: Body[]; // bodies of the mesh, from the mass matrix of the run
   impacts: Impact[]; // collisions of each body with each obstacle and of each two bodies, by their begin
   impacts_left_out: number; // number of later impacts, which are only counted

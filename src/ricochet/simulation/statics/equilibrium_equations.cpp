@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/indefinite_factor.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/problem/distortion_force.hpp"
 #include "ricochet/simulation/statics/held_bodies.hpp"
 #include "ricochet/simulation/statics/starting_stage.hpp"
 #include "ricochet/step/contact_conditions.hpp"
@@ -48,6 +49,7 @@ EquilibriumIterate::EquilibriumIterate(const SemidiscreteProblem& problem, const
       displacement_(guess),
       last_(guess),
       origin_(guess) {
+  if (problem.internal_force->distortion() != nullptr) problem.internal_force->distortion()->control_distortion(true);
   problem.loads.total(0.0, load_);
   problem.supports.values(0.0, supported_);
   reactions_.normal_reaction.setZero(problem.contact.size());
