@@ -237,6 +237,7 @@ bool Simulation::control_distortion() const {
 
 /// Refuses a step in which a node goes through an obstacle, if the step can be shorter.
 void Simulation::take_step(bool is_shortest) {
+  is_shortest_ = is_shortest;
   has_tunnelled_ = false;
   const bool is_guarded = has_guards_ && !is_shortest, may_distort = control_distortion();
   if (is_guarded || may_distort) unguarded_ = state_;

@@ -103,6 +103,7 @@ class Simulation : private StageSolve {
   Stage& stage(std::size_t number) override;
   [[nodiscard]] double newton_tolerance() const override { return options_.newton_tolerance; }
   const StageSolution& solve(std::size_t number) override;
+  [[nodiscard]] bool may_be_shortened() const override { return !is_shortest_; }
   [[nodiscard]] bool solves_exactly() const override { return !problem_.ranks->are_several(); }
   void solve_exactly(std::size_t number, ExactTangent& tangent, StageSolution& solution, Vector& unknowns) override;
   [[nodiscard]] double renewal_price() const override { return current_->solver->renewal_price(); }
@@ -124,6 +125,7 @@ class Simulation : private StageSolve {
   double whole_step_;         ///< length, without control
   PartLengths part_lengths_;  ///< without control
   long cut_steps_ = 0;
+  bool is_shortest_ = false;  ///< the step that is being solved is not divided any more
   bool short_parts_warned_ = false;
   std::vector<TunnellingWatch> guards_;  ///< contact nodes and points, each against the obstacle that they touch
   bool has_guards_ = false;              ///< on this or another rank

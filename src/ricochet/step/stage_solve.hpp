@@ -20,6 +20,8 @@ class StageSolve {
   /// is none, or if it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
 
+  /// Whether a step that is not solved is attempted in shorter parts.
+  [[nodiscard]] virtual bool may_be_shortened() const { return false; }
   /// Whether solve_exactly() is available: not if the body is divided among ranks.
   [[nodiscard]] virtual bool solves_exactly() const { return false; }
   /// Solves the equations of an exact tangent with the eligible points of a stage. `solution`: on entry the reactions

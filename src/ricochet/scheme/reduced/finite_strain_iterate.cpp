@@ -10,6 +10,10 @@ namespace ricochet {
 
 namespace {
 
+/// Overlap of a pressed point that needs no further iteration, relative to the size of the model: a part of the
+/// tolerance of Newton's method, and far above the rounding errors of positions.
+double relative_penetration(double newton_tolerance) { return std::max(1e-10, 1e-4 * newton_tolerance); }
+
 /// Work of a force on contact nodes and on rigid bodies that move freely.
 double on_contact(const SemidiscreteProblem& problem, const Vector& force, const Vector& increment) {
   double sum = 0.0;
@@ -38,6 +42,7 @@ void FiniteStrainIterate::analyse(const SemidiscreteProblem& problem, double ste
   couples_ = std::make_unique<ContactCouples>(problem);
   contact_cells_ = problem.internal_force_at_contact();
   lowest_rules_ = problem.internal_force->path_rules();
+  extent_ = extent(problem.nodes);
 }
 
 void FiniteStrainIterate::start(const StepTask& task) {
@@ -163,7 +168,19 @@ void FiniteStrainIterate::find_residual(const StageSolution& solution, Stage& st
   couples_->add(now_.middle, *stage.rows, solution.acting_normal(), solution.acting_tangential(), residual_);
 }
 
+/// Whether pressed points penetrate: the last correction may leave as much on surfaces that turn.
+bool FiniteStrainIterate::any_penetrates(const StageSolution& solution, double correction) {
+  const auto& [problem, acting, step, state, stages] = *task_;
+  const double tolerance = extent_ * relative_penetration(stages.newton_tolerance());
+  if (!problem.contact.follows_motion() || correction <= tolerance) return false;
+  problem.gaps(now_.end, state.time + step, gap_);
+  for (Index i = 0; i < gap_.size(); ++i)
+    if (solution.normal_reaction[i] > 0.0 && gap_[i] < -tolerance) return true;
+  return false;
+}
+
 bool FiniteStrainIterate::close_balance(const StageSolution& solution, double correction, bool may_refuse) {
+  if (may_refuse && any_penetrates(solution, correction)) return false;
   Stage& stage = task_->middle_stage();
   find_residual(solution, stage);
   const double created = task_->problem.contact.follows_motion() ? correction * solution.normal_reaction.sum() : 0.0;

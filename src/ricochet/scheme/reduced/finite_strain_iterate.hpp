@@ -83,6 +83,7 @@ class FiniteStrainIterate {
   [[nodiscard]] double largest_motion(const Vector& motion) const;
   void find_imbalance(Vector& force);
   void find_residual(const StageSolution& solution, Stage& stage);
+  [[nodiscard]] bool any_penetrates(const StageSolution& solution, double correction);
 
   const StepTask* task_ = nullptr;
   std::unique_ptr<FlightPrediction> flight_;
@@ -95,6 +96,7 @@ class FiniteStrainIterate {
   StepEquations equations_;
   StepLoads loads_;
   double whole_step_ = 0.0;                        ///< length of a full step
+  double extent_ = 0.0;                            ///< of the model
   double work_of_mean_ = 0.0, work_at_end_ = 0.0;  ///< ρ̄·HΔ and ρ·HΔ, less the obstacles' motion
   StepPositions now_, last_;
   Vector base_, force_, end_force_, end_contact_force_, mean_contact_force_;
@@ -104,6 +106,7 @@ class FiniteStrainIterate {
   Vector half_increment_;      ///< x − u₀
   Vector residual_;            ///< R
   Vector damping_force_, before_;
+  Vector gap_;
   Vector motion_;  ///< of an iteration, to be measured
 };
 

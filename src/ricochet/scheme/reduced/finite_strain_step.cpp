@@ -122,9 +122,11 @@ bool FiniteStrainStep::advance_exactly(const StepTask& task, Vector& increment) 
 }
 
 /// Tries iterations with a kept factor and the exact tangent, in this order or, where the former have just failed, in
-/// the other one; finally the former without a limit, and with frozen pairs.
+/// the other one; finally the former without a limit, and with frozen pairs. With the exact tangent the reactions of
+/// the end act, which lose energy in an impact: schemes that conserve it take shorter steps as long as they can.
 void FiniteStrainStep::advance(const StepTask& task, Vector& increment) {
-  if (!task.stages.solves_exactly()) return advance_with_kept_factor(task, Persistence::full, increment);
+  const bool conserves = task.acting == ActingReaction::path_mean && task.stages.may_be_shortened();
+  if (!task.stages.solves_exactly() || conserves) return advance_with_kept_factor(task, Persistence::full, increment);
   Wait kept(task.state, 0), exact(task.state, 1);
   const auto try_exactly = [&] {
     if (exact.goes_on()) return false;
